@@ -102,7 +102,7 @@ def test_any_field_is_drawn_with_numpy_and_goes_to_a_browser(
 
 
 # A surface a million times as wide as high is thinner than a pixel.
-@pytest.mark.filterwarnings("ignore:The surface is outside|lines is")
+@pytest.mark.filterwarnings("ignore:The surface is outside|lines is|cells of this grid turn")
 @property_test(8)
 @given(field_arguments(), setting_values())
 def test_any_field_is_drawn_with_vtk(
