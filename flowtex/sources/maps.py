@@ -28,10 +28,9 @@ ROUNDED = 1e-5  #: Degrees of rounding of these.
 POLAR = 66.0
 #: Span of longitudes from which on a region is around the Earth.
 AROUND = 359.0
-#: Distance in cells from another column, one turn further, up to which a column repeats it.
+#: Distance in cells from another column, one turn further, up to which a column repeats it, and
+#: from the edge of a map, up to which it lies there.
 SAME_LINE = 0.01
-#: Distance in cells from the edge of a map up to which a column is moved there.
-NEAR_EDGE = 0.1
 #: Least columns that close around the Earth.
 LEAST_RING = 8
 #: Widest gap in cells between the last column and the first, across which they close.
@@ -245,7 +244,7 @@ def lines_on_map(places: Places, projection: Projection) -> NodeLines:
             a, b = cut - 1, cut % count
             step = (lon[b] - lon[a]) % 360.0
             share = (west + 360.0 - lon[a]) / step
-            near = np.abs((lon - west + 180.0) % 360.0 - 180.0) < NEAR_EDGE * step
+            near = np.abs((lon - west + 180.0) % 360.0 - 180.0) < SAME_LINE * step
             a, b = (a if share < 1 - SAME_LINE else b), (b if share > SAME_LINE else a)
             between = (a, b, share if a != b else 0.0)
             new += [(cut, west + 360.0, *between)]

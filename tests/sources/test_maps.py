@@ -174,3 +174,24 @@ def test_paths_beyond_a_tear_go_on_as_they_come(name: str) -> None:
         moved = NodeDisplacements(surface, np.eye(3))(sign * cells)[:, surface.valid]
         longest = np.linalg.norm(surface.tangents[0][surface.valid], axis=-1).max()
         assert (sign * moved[0] > 0).all() and np.abs(moved).max() < 1.2 * 12 * longest
+
+
+@pytest.mark.parametrize("beside", [0.0, 0.03, 0.07, -0.05])
+@pytest.mark.parametrize("projection", ["robinson", "platecarree"])
+def test_columns_beside_the_edge_of_a_map_are_those_of_the_data(
+    projection: str, beside: float
+) -> None:
+    lon = -180.0 + 10.0 * (np.arange(36) + beside)
+    lat = np.arange(-80.0, 81.0, 10.0)
+    if projection == "platecarree":
+        projection = "+proj=eqc +lon_0=0"
+    data = winds(lon, lat)
+    # Rough, so that values between two columns differ from those of both.
+    data["u"] = data["u"] + 5.0 * np.cos(np.pi * np.arange(36))
+    data["u"].attrs = winds(lon, lat)["u"].attrs
+    field = FlowField.from_xarray(data, projection=projection)
+    for column in (0, 1, 35):
+        place = float((lon[column] + 180.0) % 360.0 - 180.0)
+        found = field.at(place, 20.0)
+        assert found is not None
+        assert found.eastward == pytest.approx(float(data["u"][10, column]), abs=1e-3)
