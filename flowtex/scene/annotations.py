@@ -277,9 +277,9 @@ class _Writer:
         points = structure.points(step)[:count] if count else ()
         found = {point.kind for point in points}
         rows: dict[str, Marks] = {}
-        for kind, mark in KIND_MARKS.items():
+        for kind, dot in KIND_MARKS.items():
             if kind in found:
-                rows[kind] = _dot_marks(mark)
+                rows[kind] = _dot_marks(dot)
         paths = structure.paths(step, saddles) if saddles else {}
         lines_drawn = {name: color for name, color in LINE_COLORS.items() if paths.get(name)}
         if settings.nullclines:

@@ -7,7 +7,7 @@ import re
 from collections.abc import Callable
 from dataclasses import replace
 from functools import lru_cache
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -74,11 +74,22 @@ def unit_of(projection: Projection | None) -> Affine2D:
     return Affine2D().scale(scale, DEGREE).translate(-lon * scale, 0.0)
 
 
-def same_map(field: FlowField, projection: Projection, *, stretched: bool) -> Affine2D | None:
-    """Return the transform from a map to the positions of a field; ``None`` if that differs more.
+class SameMap(NamedTuple):
+    """How a field lies on a map: the transform from the map to its positions.
+
+    Where the map ends at another meridian, its positions repeat after a ``turn``, which is 0
+    otherwise.
+    """
+
+    transform: Affine2D
+    turn: float
+
+
+def same_map(field: FlowField, projection: Projection, *, stretched: bool) -> SameMap | None:
+    """Return how a field lies on a map; ``None`` if it lies on one that differs more.
 
     The field may lie on a map of another size or origin, and if ``stretched`` with other scales
-    of x and y.
+    of x and y, or one that ends at another meridian.
     """
     own = field.projection
     if own is None or own.is_globe or projection.is_globe:
@@ -87,6 +98,30 @@ def same_map(field: FlowField, projection: Projection, *, stretched: bool) -> Af
     nodes = nodes[:: len(nodes) // MOST_COMPARED + 1]
     theirs = field.points.reshape(-1, 3)[nodes, :2]
     ours = projection.positions(*own.lonlat(field.points.reshape(-1, 3)[nodes]))[:, :2]
+    same = _even_transform(theirs, ours, stretched=stretched)
+    if same is not None:
+        return SameMap(same, 0.0)
+    turn = _turn_of(projection)
+    if not (stretched and np.isfinite(ours).all() and math.isfinite(turn) and turn > 0):
+        return None
+    order = np.argsort(theirs[:, 0], kind="stable")
+    onward = ours[order]
+    onward[:, 0] = np.unwrap(onward[:, 0], period=turn)
+    same = _even_transform(theirs[order], onward, stretched=True)
+    if same is None:
+        return None
+    return SameMap(same, turn * float(same.get_matrix()[0, 0]))
+
+
+def _turn_of(projection: Projection) -> float:
+    """Return how far x increases around the Earth on a map with straight meridians."""
+    lon = np.arange(-180.0, 180.0, 30.0)
+    x = projection.positions(np.stack([lon, lon + 1], axis=-1), np.zeros((len(lon), 2)))[..., 0]
+    return float(360.0 * np.median(np.diff(x, axis=-1)))
+
+
+def _even_transform(theirs: Floats, ours: Floats, *, stretched: bool) -> Affine2D | None:
+    """Return the scales and the shift from some places to others; ``None`` if it is no such."""
     spans = np.ptp(theirs, axis=0)
     if not (np.isfinite(ours).all() and (spans > 0).all() and (np.ptp(ours, axis=0) > 0).all()):
         return None

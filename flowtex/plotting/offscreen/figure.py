@@ -29,6 +29,7 @@ from flowtex.field.finer import finest_of
 from flowtex.field.options import FieldOptions, accepts_options
 from flowtex.plotting.offscreen.axes_kinds import (
     AxesScales,
+    SameMap,
     is_geo,
     label_degrees,
     projection_of_axes,
@@ -144,7 +145,8 @@ def axes(
         projection.
     mesh
         As for :func:`flowtex.render`; its surface must be flat. On axes of cartopy a field of the
-        Earth is put on their map, whichever it lies on. A large store must lie on their map.
+        Earth is put on their map, whichever it lies on. A large store must lie on their map, which
+        may end at another meridian.
     time, clock, supersampling
         As for :func:`flowtex.render`.
     {options}
@@ -274,8 +276,11 @@ class FlowImage(AxesImage):
 
     def __init__(self, ax: Axes, mesh: Any, options: Options, supersampling: int) -> None:
         self._unit = Affine2D()
+        self._turn = 0.0
         if is_geo(ax):
-            mesh, options, self._unit = _on_map(ax, mesh, options)
+            mesh, options, placed = _on_map(ax, mesh, options)
+            self._unit = placed.transform
+            self._turn = placed.turn
         if _kind(ax)[0] == "polar":
             mesh, options = read_field(mesh, options.field), replace(options, field=FieldOptions())
             scalar = options.appearance.scalar_name
@@ -298,6 +303,9 @@ class FlowImage(AxesImage):
         if is_scaled := not is_geo(ax) and _kind(ax) != LINEAR:
             corners = AxesScales(ax, framed=False).extent(self._flow, frame)
         (left, bottom), (right, top) = corners.tolist()
+        if self._turn:  # the flow may lie at both ends of the map
+            map_axes: Any = ax
+            left, right = map_axes.projection.x_limits
         _limit(ax, left, right, bottom, top)
         if is_scaled:
             self._follow_scales(AxesScales(ax, framed=False))
@@ -470,10 +478,27 @@ class FlowImage(AxesImage):
         cmap = self._scene.appearance.cmap
         shown += (self.axes.get_facecolor(), self._changes, cmap, self.get_alpha())
         if shown != self._shown:
-            self._picture = self._draw(corners, (width, height), density)
+            self._picture = self._draw_around(corners, (width, height), density)
             self._shown = shown
         left, bottom = low / magnification
         return self._picture, float(left), float(bottom), None
+
+    def _draw_around(self, corners: Floats, size: tuple[int, int], density: float) -> Bytes:
+        """Draw a rectangle in which the flow may be repeated from turn to turn."""
+        turn = self._turn
+        if not turn:
+            return self._draw(corners, size, density)
+        surface = self._scene.whole.surface
+        middle, half = self._frame @ surface.center, surface.plane_size / 2
+        shares = (np.arange(size[0]) + 0.5) / size[0]
+        x = corners[0, 0] + shares * (corners[1, 0] - corners[0, 0])
+        turns = np.floor((x - (middle[0] - half[0])) / turn)
+        picture = np.zeros((size[1], size[0], 4), dtype=np.uint8)
+        for number in np.unique(turns):
+            shifted = corners - np.array([number * turn, 0.0])
+            columns = turns == number
+            picture[:, columns] = self._draw(shifted, size, density)[:, columns]
+        return picture
 
     def _draw(self, corners: Floats, size: tuple[int, int], density: float) -> Bytes:
         """Draw the rectangle between two corners, (2, 2), row 0 at the bottom, opaque."""
@@ -546,8 +571,8 @@ def _kind(ax: Axes) -> tuple[str, str, str]:
     return ax.name, ax.get_xscale(), ax.get_yscale()
 
 
-def _on_map(ax: Axes, mesh: Any, options: Options) -> tuple[Any, Options, Affine2D]:
-    """Return what is drawn on axes of a map, its options, and the transform from axes to data.
+def _on_map(ax: Axes, mesh: Any, options: Options) -> tuple[Any, Options, SameMap]:
+    """Return what is drawn on axes of a map, its options, and how the data lie on the axes.
 
     Datasets are read in the projection of the axes. Fields and stores have one already: where it is
     that of the axes they are drawn as they are, otherwise fields are put on another map.
@@ -563,22 +588,22 @@ def _on_map(ax: Axes, mesh: Any, options: Options) -> tuple[Any, Options, Affine
     options = replace(options, appearance=look)
     if not isinstance(mesh, FlowField) and not is_stored(mesh):
         field_options = replace(options.field, projection=name)
-        return mesh, replace(options, field=field_options), unit
+        return mesh, replace(options, field=field_options), SameMap(unit, 0.0)
     field = read_field(mesh, options.field)
     options = replace(options, field=FieldOptions())
     _check_earth(field)
     is_large = finest_of(field) is not None
     same = same_map(field, Projection(name), stretched=is_large)
     if same is not None:
-        joined: Any = unit + same  # affine, as both are
-        return field, options, joined
+        joined: Any = unit + same.transform  # affine, as both are
+        return field, options, SameMap(joined, same.turn)
     if is_large:
         raise FieldError(
             f"ax shows the map {name!r}, but the large store lies on {field.projection!r}; draw it "
             "on axes of that map, or build it on the map of the axes: "
             f"flowtex.pyramid.build(data, store, projection={name!r})"
         )
-    return reprojected(field, name), options, unit
+    return reprojected(field, name), options, SameMap(unit, 0.0)
 
 
 def _check_earth(field: FlowField) -> None:

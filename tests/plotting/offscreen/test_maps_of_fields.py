@@ -191,6 +191,45 @@ def test_stores_are_drawn_on_their_own_map(stores: Path) -> None:
             shown(AXES["polar"], store)
 
 
+#: Longitudes of data, the map of their store, and axes that end elsewhere.
+TURNED: dict[str, tuple[Floats, str, Any]] = {
+    "around": (np.arange(0.0, 360.0, 5.0), "platecarree", ccrs.PlateCarree(180)),
+    "region": (np.arange(140.0, 240.0, 4.0), "platecarree", ccrs.PlateCarree()),
+    "Mercator": (np.arange(0.0, 360.0, 5.0), "+proj=merc +lon_0=180", ccrs.Mercator()),
+}
+
+
+@pytest.mark.parametrize("name", TURNED)
+def test_a_store_is_drawn_on_axes_that_end_at_another_meridian(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, small_tiles: None, name: str
+) -> None:
+    pytest.importorskip("zarr")
+    lon, projection, crs = TURNED[name]
+    monkeypatch.setattr("flowtex.textures.tiles.pyramid.ROOT_NODES", 150)
+    place = tmp_path / "turned.zarr"
+    flow = FlowField.from_xarray(winds(lon, np.arange(-80.0, 81.0, 4.0)), projection=projection)
+    flowtex.pyramid.build(flow, place, progress=False)
+    image, shot = shown(crs, place, coastlines=False)
+    inner = (lon + 180.0) % 360.0 - 180.0 + 1.7
+    places = np.meshgrid(inner[1:-1], np.arange(-70.0, 71.0, 10.0))
+    a, b = (at.ravel() for at in places)
+    x, y = (np.floor(at).astype(int) for at in pixel(image, a, b))
+    inside = (x >= 0) & (y >= 0) & (x < shot.shape[1]) & (y < shot.shape[0])
+    assert inside.mean() > 0.9
+    drawn = shot[y[inside], x[inside]].astype(float)
+    assert np.ptp(drawn, axis=1).max() <= 2, "grey, and not the ground"
+    low, high = image.get_clim()
+    wanted = (np.hypot(*components(a, b))[inside] - low) / (high - low)
+    # Its coarsest level has a node in 30 degrees or so.
+    assert np.quantile(np.abs(drawn[:, 0] / 255 - wanted), 0.9) < 0.06
+    if name == "region":
+        x, y = (
+            np.floor(at).astype(int)
+            for at in pixel(image, np.arange(-100.0, 130, 10.0), np.zeros(23))
+        )
+        assert (shot[y, x] == (255, 0, 255)).all(), "nothing beside the data"
+
+
 def test_small_stores_are_drawn_on_every_map(stores: Path) -> None:
     for name in ("polar", "PlateCarree around 180"):
         assert_right(*shown(AXES[name], stores / "small_flat.zarr"))
@@ -209,12 +248,14 @@ def test_a_legend_names_places_without_data(name: str) -> None:
     figure = Figure()
     ax = figure.add_subplot(projection=AXES.get(name), facecolor="black")
     flowtex.axes(ax, field, samples=3)
-    (handle,), labels = ax.get_legend_handles_labels()
+    handles: Any
+    handles, labels = ax.get_legend_handles_labels()
     assert labels == ["no data"]
     assert ax.get_legend() is not None
-    np.testing.assert_allclose(handle.get_facecolor()[:3], missing_colour((0.0, 0.0, 0.0)))
+    assert handles[0].get_facecolor()[:3] == pytest.approx(missing_colour((0.0, 0.0, 0.0)))
     # A complete field has none, and neither has one whose gaps are not drawn.
-    for flow, look in ((from_arrays(), {}), (field, {"land": None})):
+    cases: list[tuple[FlowField, dict[str, Any]]] = [(from_arrays(), {}), (field, {"land": None})]
+    for flow, look in cases:
         other = figure.add_subplot(projection=AXES.get(name))
         flowtex.axes(other, flow, samples=3, **look)
         assert other.get_legend() is None
