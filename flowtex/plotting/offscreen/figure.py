@@ -303,10 +303,7 @@ class FlowImage(AxesImage):
         if is_scaled := not is_geo(ax) and _kind(ax) != LINEAR:
             corners = AxesScales(ax, framed=False).extent(self._flow, frame)
         (left, bottom), (right, top) = corners.tolist()
-        if self._turn:  # the flow may lie at both ends of the map
-            map_axes: Any = ax
-            left, right = map_axes.projection.x_limits
-        _limit(ax, left, right, bottom, top)
+        _limit(ax, *self._ends(ax, left, right), bottom, top)
         if is_scaled:
             self._follow_scales(AxesScales(ax, framed=False))
             scene = self._scene
@@ -320,6 +317,13 @@ class FlowImage(AxesImage):
             self.set_norm(norm if scene.appearance.norm is None else scene.appearance.norm)
         self._first_norm, self._first_clim = self.norm, self.get_clim()
         self._title = ""
+
+    def _ends(self, ax: Any, left: float, right: float) -> tuple[float, float]:
+        """Return the ends along x: those of the map where the flow may lie at both of these."""
+        if not self._turn:
+            return left, right
+        low, high = ax.projection.x_limits
+        return float(low), float(high)
 
     def _bar_colours(self) -> Colormap:
         """Return the colours of a colour bar, which are those of the picture."""
