@@ -181,7 +181,7 @@ def test_paths_beyond_a_tear_go_on_as_they_come(name: str) -> None:
 def test_columns_beside_the_edge_of_a_map_are_those_of_the_data(
     projection: str, beside: float
 ) -> None:
-    lon = -180.0 + 10.0 * (np.arange(36) + beside)
+    lon = np.asarray(-180.0 + 10.0 * (np.arange(36) + beside), float)
     lat = np.arange(-80.0, 81.0, 10.0)
     if projection == "platecarree":
         projection = "+proj=eqc +lon_0=0"

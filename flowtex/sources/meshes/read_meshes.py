@@ -114,7 +114,7 @@ def _has_cells_at_folds(grid: Any, plane: volume.Plane, velocity: MeshArray) -> 
     if velocity.where != "cells" or grid.max_cell_dimensionality != 2:
         return False
     points = volume.plane_positions(grid, plane)
-    known = np.isfinite(points).all(axis=-1)
+    known = np.asarray(np.isfinite(points).all(axis=-1))
     return known.size <= MOST_NODES and GridSurface(points, known, (False, False)).is_folded
 
 
