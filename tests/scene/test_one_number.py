@@ -229,11 +229,15 @@ def test_datasets_fields_and_maps_have_one_number(seed: int) -> None:
         if data.sizes["time"] > 1:
             exact = exact.interp(time=time)
         wanted = [float(exact[key].squeeze()) for key in ("u", "v", "speed", "q")]
-        for name, field in zip((one, other, one), fields, strict=True):
+        shares = [on_edge(one), on_edge(other), on_edge(one)]
+        if on_edge(one) > on_edge(None):
+            # Taken from such a map it is a curvilinear grid, whose cells of up to 18 degrees have
+            # straight sides on the other map.
+            shares[2] = 0.08
+        for share, field in zip(shares, fields, strict=True):
             got = field.at(lon, lat, time=time)
             if got is None:
                 continue  # beyond the edge of the map
-            share = on_edge(name)
             assert numbers(got) == pytest.approx(wanted, rel=2e-3, abs=share * size)
     got = fields[0].at(lon, lat, time=time)
     if got is not None:
