@@ -1,11 +1,12 @@
 // Where on the surface each pixel of a view lies, and the colours there.
 //
-//   layers --triangles, once for a view--> places, depths --pixels, strip by strip--> colours
+//   layers --triangles, once for a view--> places, depths --pixels, strip by strip--> sums --at once--> colours
 //
 // Drafts, strips, outlines and the pointer read the places.
 
 import { projection, type Camera } from "./camera.ts";
 import type { Graphics } from "./context.ts";
+import { LocalMeans, type EvenBlocks } from "./even.ts";
 import { seenBlocks, type Covered, type Seen } from "./meshlevels.ts";
 import { SAMPLERS, type Program } from "./programs.ts";
 import type { Scene } from "./scene.ts";
@@ -39,7 +40,7 @@ export interface PlaceAt {
 type Uniforms = Record<string, Uniform>;
 
 interface Target {
-  /** Of the places, and of the colours. */
+  /** Of the places, of the sums, and of the colours. */
   frames: WebGLFramebuffer[];
   /** In the order of `UNITS`. */
   textures: WebGLTexture[];
@@ -49,13 +50,14 @@ interface Target {
 
 /** Squares along a side of the surface at most, by which vertices look up how others are drawn. */
 const MOST_SQUARES = 1024;
-const UNITS = ["u_places", "u_depths", "u_colours", "u_strides"].map((name) => SAMPLERS.indexOf(name));
+const UNITS = ["u_places", "u_depths", "u_colours", "u_strides", "u_below", "u_texture"].map((name) => SAMPLERS.indexOf(name));
 
 export class Places {
   /** Size of the picture whose places are there. */
   width = 0;
   height = 0;
   private readonly graphics: Graphics;
+  private readonly means: LocalMeans;
   private target: Target | null = null;
   private key = "";
   private layers: readonly Layer[] = [];
@@ -65,6 +67,7 @@ export class Places {
 
   constructor(graphics: Graphics) {
     this.graphics = graphics;
+    this.means = new LocalMeans(graphics);
   }
 
   /** Draw the places of a view, unless they are there. */
@@ -133,12 +136,38 @@ export class Places {
     });
   }
 
-  /** Have colours of some rows of the picture, from the top, computed by a program. */
+  /** Have sums of some rows of the picture, from the top, computed by a program. */
   sum(program: Program, top: number, rows: number, valuesOf: (scene: Scene) => Uniforms): void {
     const { graphics, width, height, target } = this;
     const gl = graphics.context;
     const bottom = height - top - rows;
     gl.bindFramebuffer(gl.FRAMEBUFFER, target?.frames[1] ?? null);
+    gl.enable(gl.SCISSOR_TEST);
+    gl.scissor(0, bottom, width, rows);
+    gl.clearBufferfv(gl.COLOR, 1, [0, 0, 0, 0]);
+    this.pixels(program, bottom, rows, valuesOf);
+    // Reading a pixel waits until everything is drawn.
+    gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.FLOAT, new Float32Array(4));
+    gl.bindFramebuffer(gl.FRAMEBUFFER, null);
+  }
+
+  /** Have colours computed from the sums, less their local means if there are blocks. */
+  colour(blocks: EvenBlocks | null, valuesOf: (scene: Scene) => Uniforms): void {
+    const { graphics, layers, means, width, height, target } = this;
+    const gl = graphics.context;
+    const [{ scene: root }] = layers;
+    this.bind();
+    if (blocks) means.draw(root.programs("blocks"), root.programs("blur"), blocks, width, height);
+    gl.bindFramebuffer(gl.FRAMEBUFFER, target?.frames[2] ?? null);
+    const side = blocks?.side ?? 1;
+    this.pixels(root.programs("colour"), 0, height, (scene) => ({ ...valuesOf(scene), u_side: side }));
+    gl.bindFramebuffer(gl.FRAMEBUFFER, null);
+  }
+
+  /** Draw the pixels of all layers in some rows by a program. */
+  private pixels(program: Program, bottom: number, rows: number, valuesOf: (scene: Scene) => Uniforms): void {
+    const { graphics, width, height } = this;
+    const gl = graphics.context;
     gl.viewport(0, 0, width, height);
     gl.enable(gl.SCISSOR_TEST);
     gl.disable(gl.DEPTH_TEST);
@@ -155,9 +184,6 @@ export class Places {
       graphics.programs.use(program, { ...values, u_layer: n + 1 });
       gl.drawArrays(gl.TRIANGLES, 0, 3);
     });
-    // Reading a pixel waits until everything is drawn.
-    gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(4));
-    gl.bindFramebuffer(gl.FRAMEBUFFER, null);
   }
 
   /** Draw the surface with its colours and depths, without smooth outlines. */
@@ -190,6 +216,7 @@ export class Places {
     const { graphics, target } = this;
     for (const texture of target?.textures ?? []) graphics.free("Texture", texture);
     for (const frame of target?.frames ?? []) graphics.free("Framebuffer", frame);
+    this.means.dispose();
     this.target = null;
     this.key = "";
   }
@@ -233,7 +260,7 @@ export class Places {
     const { key } = this;
     const size = { width: Math.max(width, target?.width ?? 0), height: Math.max(height, target?.height ?? 0) };
     this.dispose();
-    const textures = [gl.RGBA32UI, gl.DEPTH_COMPONENT24, gl.RGBA8, 0].map((format) => {
+    const textures = [gl.RGBA32UI, gl.DEPTH_COMPONENT24, gl.RGBA8, 0, gl.RGBA16F, gl.RG16F].map((format) => {
       const texture = graphics.counted(gl.createTexture());
       gl.bindTexture(gl.TEXTURE_2D, texture);
       if (format) gl.texStorage2D(gl.TEXTURE_2D, 1, format, size.width, size.height);
@@ -241,13 +268,19 @@ export class Places {
       gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MAG_FILTER, gl.NEAREST);
       return texture;
     });
-    const frames = [[textures[0], textures[1]], [textures[2]]].map((attached) => {
+    const [first, second] = [gl.COLOR_ATTACHMENT0, gl.COLOR_ATTACHMENT1];
+    const [places, depths, colours, , below, sums] = textures;
+    const frames = [
+      [[first, places], [gl.DEPTH_ATTACHMENT, depths]] as const,
+      [[first, below], [second, sums]] as const,
+      [[first, colours]] as const,
+    ].map((attached) => {
       const frame = graphics.counted(gl.createFramebuffer());
       gl.bindFramebuffer(gl.FRAMEBUFFER, frame);
-      attached.forEach((texture, n) => {
-        const point = n ? gl.DEPTH_ATTACHMENT : gl.COLOR_ATTACHMENT0;
+      for (const [point, texture] of attached) {
         gl.framebufferTexture2D(gl.FRAMEBUFFER, point, gl.TEXTURE_2D, texture, 0);
-      });
+      }
+      gl.drawBuffers(attached.map(([point]) => point).filter((point) => point !== gl.DEPTH_ATTACHMENT));
       return frame;
     });
     this.key = key;

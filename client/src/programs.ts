@@ -17,6 +17,7 @@ const ATTRIBUTES = [
 export const SAMPLERS = [
   ...["u_slices", "u_slicesNext", "u_image", "u_stepImage", "u_cmap", "u_shares", "u_along", "u_nodes"],
   ...["u_corners", "u_open", "u_places", "u_depths", "u_colours", "u_strides"],
+  ...["u_below", "u_texture", "u_means"],
 ];
 
 export interface Program {
@@ -136,6 +137,7 @@ export class Programs {
       else if (type === gl.FLOAT_VEC3) gl.uniform3fv(location, numbers);
       else if (type === gl.FLOAT_VEC4) gl.uniform4fv(location, numbers);
       else if (type === gl.FLOAT_MAT4) gl.uniformMatrix4fv(location, false, numbers);
+      else if (type === gl.INT_VEC2) gl.uniform2iv(location, numbers as Int32List);
       else gl.uniform1i(location, numbers[0]);
     }
   }

@@ -6,11 +6,12 @@ import * as mat2d from "gl-matrix/esm/mat2d.js";
 import { Camera, projection, rays } from "./camera.ts";
 import type { Graphics } from "./context.ts";
 import type { EarthView } from "./earthlayer.ts";
+import { evenBlocks } from "./even.ts";
 import type { Layer, PlaceAt, Places } from "./places.ts";
 import type { Program } from "./programs.ts";
 import { draftUniforms, learnedPrice, motionFactor, movingTime, quality, rowsIn } from "./quality.ts";
 import type { Scene } from "./scene.ts";
-import { hasArrows, isNear, type Moment, uniforms, type ViewState } from "./uniforms.ts";
+import { hasArrows, isEven, isNear, type Moment, uniforms, type ViewState } from "./uniforms.ts";
 import { clamp, scale, subtract, toFrame } from "./vectors.ts";
 
 /** Milliseconds for a picture in motion of one of many views at least, and for a strip at rest. */
@@ -153,7 +154,7 @@ export class ProgressiveRenderer {
       const started = performance.now();
       this.place(shown, w, h);
       const summed = this.sum(program, shown, 0, h, best.samples);
-      this.show(shown, false);
+      this.show(shown, false, best.samples);
       this.fixed += 0.5 * (clamp(performance.now() - started - summed, 0.5, 500) - this.fixed);
     }
     if (reuse && this.pen) {
@@ -185,7 +186,7 @@ export class ProgressiveRenderer {
     this.sum(program, shown, this.rowsDone, rows, samples);
     this.rowsDone += rows;
     if (this.rowsDone < height) return false;
-    this.show(shown, this.content.smooth);
+    this.show(shown, this.content.smooth, samples);
     this.complete();
     this.drawLines(shown);
     return true;
@@ -278,7 +279,7 @@ export class ProgressiveRenderer {
     if (!places || !scene || !camera) return 0;
     const { width, height } = places;
     const view = this.viewer.view(shown, this.density(height));
-    const draft = samples !== this.viewer.settings.samples || height !== this.canvas.height;
+    const draft = this.isDraft(height, samples);
     const valuesOf = (layer: Scene) => {
       layer.bindNodes(view.anchor);
       layer.bindTextures(shown[0], shown[1]);
@@ -294,10 +295,31 @@ export class ProgressiveRenderer {
     return spent;
   }
 
-  /** Show the picture whose colours are there, with what is around the surface. */
-  private show(shown: Moment, smooth: boolean): void {
+  private isDraft(height: number, samples: number): boolean {
+    return samples !== this.viewer.settings.samples || height !== this.canvas.height;
+  }
+
+  /** Have the colours of a picture whose sums are there. */
+  private colour(places: Places, shown: Moment, samples: number): void {
+    const { scene } = this.content;
+    const { camera } = this.viewer;
+    if (!scene || !camera) return;
+    const { width, height } = places;
+    const view = this.viewer.view(shown, this.density(height));
+    const draft = this.isDraft(height, samples);
+    const valuesOf = (layer: Scene) => this.values(layer, scene, camera, view, samples, draft);
+    const { u_grain: grain } = valuesOf(scene);
+    const { header } = scene;
+    const even = isEven(header, this.viewer.settings);
+    const blocks = even ? evenBlocks(header.constants.even, Number(grain), width, height) : null;
+    places.colour(blocks, valuesOf);
+  }
+
+  /** Show the picture whose sums are there, with what is around the surface. */
+  private show(shown: Moment, smooth: boolean, samples: number): void {
     const { places } = this.content;
     if (!places) return;
+    this.colour(places, shown, samples);
     const { width, height } = places;
     const { canvas } = this.graphics;
     if (canvas.width < width) canvas.width = width;

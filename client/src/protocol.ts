@@ -289,7 +289,8 @@ export interface FormulaHeader {
 
 type ShaderName =
   "vertex" | "place" | "fragment" | "surface" | "lineVertex" | "lineFragment" | "groundVertex" | "groundFragment"
-  | "arrowVertex" | "arrowFragment" | "bodyVertex" | "bodyFragment" | "fullVertex" | "probe";
+  | "arrowVertex" | "arrowFragment" | "bodyVertex" | "bodyFragment" | "fullVertex" | "probe"
+  | "even" | "colour";
 /** Those of a client that traces. */
 type TraceShaderName = "trace" | "layers";
 
@@ -389,6 +390,7 @@ export interface Header {
     >;
     /** Cells that a side of a path goes over, beyond which it does not follow their own velocity. */
     farCells: number;
+    even: { sigma: number; radii: number };
     shading: Shading;
   };
   /** Cells along a side of a block. */

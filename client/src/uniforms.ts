@@ -56,6 +56,7 @@ export function uniforms(header: Header, settings: Settings, view: ViewState): R
     u_lod: s.lod,
     u_contrast: s.contrast,
     u_strength: s.strength,
+    u_even: isEven(header, settings),
     u_fade: signFree ? 0 : s.fade,
     u_seed: s.seed,
     u_showLevel: s.show_level,
@@ -82,6 +83,12 @@ export function isMoving(header: Header, settings: Settings, still = false): boo
 /** Whether the texture is one of streaklets, which is a variant too. */
 export function isSparse(header: Header, settings: Settings): boolean {
   return !header.image && settings.texture === "streaklets";
+}
+
+/** Whether the local mean of the texture is subtracted, where grains fit the pixels. */
+export function isEven(header: Header, settings: Settings): boolean {
+  const fits = settings.lod && !settings.fixed_grain;
+  return Boolean(fits) && !header.image && !isSparse(header, settings);
 }
 
 /** Whether arrows are drawn: a sign-free field has none, nor has an image. */

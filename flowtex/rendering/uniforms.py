@@ -28,6 +28,8 @@ WAVE_PIXELS = 96.0  #: Pixels of flow in one turn of a grain, up to twice as man
 CLOCK_STEP = 2.0**-12  #: Step of the coarse part of the clock, exact times a power of two.
 MOST_TURNS = 2.0**12  #: End of the clock in base periods.
 
+EVEN_RADII = 2.5  #: Deviations of the bell of a local mean at which its blur ends.
+
 ARROW_PIECES = 12  #: Pieces of an arrow.
 ARROW_LEAST = 0.85  #: Least distance of two arrows over the mean one.
 ARROW_MOST_DENSE = 8.0  #: Least distance of two arrows in pixels.
@@ -95,6 +97,7 @@ def client_constants() -> dict[str, Any]:
             **seed_limits(),
         },
         "farCells": const.FAR_CELLS,
+        "even": {"sigma": const.EVEN_SIGMA, "radii": EVEN_RADII},
         "shading": {
             "toCones": const.TO_CONES.ravel().tolist(),
             "toLab": const.TO_LAB.ravel().tolist(),
@@ -134,6 +137,7 @@ def uniforms(textures: TextureSet, settings: Settings, view: ViewState) -> dict[
         "u_lod": settings.lod,
         "u_contrast": settings.contrast,
         "u_strength": settings.strength,
+        "u_even": is_even(textures, settings),
         # Layer 2 of a node that points against others is one without the speed.
         "u_fade": 0.0 if geometry.field.sign_free else settings.fade,
         "u_seed": settings.seed,
@@ -167,6 +171,12 @@ def is_moving(textures: TextureSet, settings: Settings, view: ViewState) -> bool
 def is_sparse(textures: TextureSet, settings: Settings) -> bool:
     """Return whether the texture consists of streaklets, which an image cannot."""
     return settings.texture == "streaklets" and textures.image is None
+
+
+def is_even(textures: TextureSet, settings: Settings) -> bool:
+    """Return whether the texture's local mean is subtracted, where grains fit the pixels."""
+    fits = settings.lod and not settings.fixed_grain
+    return fits and textures.image is None and not is_sparse(textures, settings)
 
 
 def has_arrows(textures: TextureSet, settings: Settings) -> bool:

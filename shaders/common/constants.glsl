@@ -16,6 +16,10 @@ const float FLOWTEX_BELL_BEND = 0.06;
 const float FLOWTEX_BELL_END = 3.0; // d^2 beyond which it counts as zero
 const int FLOWTEX_UNCERTAIN_LAYER = 3; // whose fourth channel is the uncertainty of the direction
 const float FLOWTEX_FADED = 0.3;         // contrast where it is not known at all
+// The local mean that is subtracted from the texture.
+const float FLOWTEX_EVEN_SIGMA = 2.0;    // deviation of the bell that it is over, in grains
+const float FLOWTEX_LEAST_NEAR = 1e-6;   // correlations of neighbouring weights that count
+const float FLOWTEX_MOST_NEAR = 0.999999;
 const int FLOWTEX_SHARED_TERMS = 24; // neighbours of a sample that may share its grain
 
 // Paths in a cell give way to the slices from one number to the other: of the length of the nodes'

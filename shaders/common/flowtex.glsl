@@ -9,6 +9,7 @@ void flowtexMove(float slope, float speed);
 #endif
 //#include common/path.glsl
 //#include common/cell.glsl
+//#include common/even_gain.glsl
 //#include common/texture.glsl
 //#include common/derivatives.glsl
 //#include common/levels.glsl

@@ -1,16 +1,16 @@
-// The texture of a fragment.
+// The texture of a fragment, and the factor by which it is shown.
 
 //#include common/place.glsl
 
 #ifdef FLOWTEX_IMAGE
 // Called outside of any branch: derivatives are not defined behind one.
-float flowtexValue(vec2 coordinate, vec2 at)
+vec2 flowtexValue(vec2 coordinate, vec2 at)
 {
   float level = flowtexSliceLevel(flowtexDx(coordinate), flowtexDy(coordinate));
   return flowtexFragment(coordinate, at, flowtexDx(at), flowtexDy(at), level);
 }
 #else
-float flowtexValueAt(FlowtexPlace place)
+vec2 flowtexValueAt(FlowtexPlace place)
 {
 #if defined(FLOWTEX_TRIANGLES) && defined(FLOWTEX_CELLS) || defined(FLOWTEX_SPARSE)
   flowtexSetBy(place.dx, place.dy, place.byX, place.byY);
@@ -26,7 +26,7 @@ float flowtexValueAt(FlowtexPlace place)
 
 #ifndef FLOWTEX_DEFERRED
 // From varyings, outside of any branch.
-float flowtexValue(inout vec2 coordinate, vec3 position)
+vec2 flowtexValue(inout vec2 coordinate, vec3 position)
 {
   // Relative to a point near the view: fewer digits are lost.
   vec3 dx = flowtexDx(position - u_noiseOrigin);

@@ -39,7 +39,7 @@ vec3 flowtexPaint(vec3 colour)
 }
 
 // Sums the image at an image coordinate with its derivatives.
-float flowtexFragment(vec2 coordinate, vec2 at, vec2 dx, vec2 dy, float sliceLevel)
+vec2 flowtexFragment(vec2 coordinate, vec2 at, vec2 dx, vec2 dy, float sliceLevel)
 {
   flowtexHere = at;
   flowtexNoiseLevel = flowtexMip(flowtexCovered(dx, dy, u_imageSize));

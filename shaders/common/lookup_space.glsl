@@ -69,8 +69,8 @@ float flowtexStretch(vec3 dx, vec3 dy, vec2 footprint, vec3 tangent)
   return isUsual ? 1.0 : stretch;
 }
 
-// Texture at a position with the footprint given by its derivatives.
-float flowtexFragment(vec3 position, vec3 dx, vec3 dy, vec2 coordinate, float sliceLevel)
+// Texture and factor at a position with the footprint given by its derivatives.
+vec2 flowtexFragment(vec3 position, vec3 dx, vec3 dy, vec2 coordinate, float sliceLevel)
 {
   vec4 base = flowtexLayer(coordinate, 0, sliceLevel);
   vec2 footprint = flowtexFootprint(dx, dy);

@@ -210,10 +210,11 @@ void flowtexSides(inout FlowtexSums sums, vec2 coordinate, float level, vec3 slo
     flowtexSide(sums, coordinate, level, slope, u_lagCount, 1.0, spacing, scale, count, inCell);
 }
 
-// Texture of a fragment, of zero mean and about unit variance. ``spacing`` is that of the points
+// Texture of a fragment, of zero mean and about unit variance, and the factor by which it is shown once its
+// local mean is subtracted: the contrast that this takes, and less where it fades. ``spacing`` is that of the points
 // in nominal length, or in units of lag for an image; ``stretch`` times as many as usual are summed.
 // ``base`` is layer 0 at the fragment.
-float flowtexTexture(vec2 coordinate, float sliceLevel, vec4 base, float spacing, float stretch)
+vec2 flowtexTexture(vec2 coordinate, float sliceLevel, vec4 base, float spacing, float stretch)
 {
   FlowtexSums sums = FlowtexSums(vec2(0.0), 0.0, 0.0);
   float speed = length(base.xyz);
@@ -252,16 +253,18 @@ float flowtexTexture(vec2 coordinate, float sliceLevel, vec4 base, float spacing
       flowtexSides(sums, coordinate, sliceLevel, base.xyz, spacing, scale, count, false);
   }
 #ifdef FLOWTEX_IMAGE
-  return 0.0; // the colours have been gathered
+  return vec2(0.0); // the colours have been gathered
 #else
-  float value = flowtexBlend(sums.noise * inversesqrt(sums.squares), sums.neighbours / sums.squares);
+  float near = sums.neighbours / sums.squares;
+  float value = flowtexBlend(sums.noise * inversesqrt(sums.squares), near);
+  float share = u_even ? flowtexEvenGain(near, stretch) : 1.0;
 #ifdef FLOWTEX_UNCERTAIN
-  value *= mix(FLOWTEX_FADED, 1.0, known);
+  share *= mix(FLOWTEX_FADED, 1.0, known);
 #endif
-  value *= step(FLOWTEX_LEAST_SPEED, speed); // a particle at rest has no direction
-  value *= clamp(1.0 + shown, 0.0, 1.0);
+  share *= step(FLOWTEX_LEAST_SPEED, speed); // a particle at rest has no direction
+  share *= clamp(1.0 + shown, 0.0, 1.0);
   if (u_fade > 0.0)
-    value *= smoothstep(0.0, u_fade, shown);
-  return value;
+    share *= smoothstep(0.0, u_fade, shown);
+  return vec2(value, share);
 #endif
 }

@@ -26,6 +26,7 @@ uniform int u_kernel;       // FLOWTEX_KERNEL_HANN, ..._BOX or ..._RAMP
 uniform bool u_lod;
 uniform float u_contrast;
 uniform float u_strength;
+uniform bool u_even;        // whether the local mean will be subtracted
 uniform float u_fade;       // speed below which the texture fades, over the typical one
 uniform int u_seed;
 uniform bool u_showLevel;   // colour by the level of detail

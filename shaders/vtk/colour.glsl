@@ -4,8 +4,8 @@ uniform vec3 u_plainColour; // that of the surface
 
 //#include vtk/mapped.glsl
 
-// A colour, unless there is another one, with the texture.
-vec3 flowtexColoured(vec3 colour, vec2 coordinate, float value)
+// A colour, unless there is another one, below the texture.
+vec3 flowtexBelow(vec3 colour, vec2 coordinate)
 {
   if (u_mapped)
     colour = flowtexMapped(coordinate);
@@ -13,9 +13,5 @@ vec3 flowtexColoured(vec3 colour, vec2 coordinate, float value)
     colour = u_plainColour;
   if (u_showLevel)
     colour = flowtexLevelColour(flowtexNoiseLevel);
-#ifdef FLOWTEX_IMAGE
-  return flowtexPaint(colour);
-#else
-  return flowtexShade(colour, value);
-#endif
+  return colour;
 }

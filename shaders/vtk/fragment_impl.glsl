@@ -4,10 +4,10 @@
 #ifdef FLOWTEX_DEFERRED
   vec4 flowtexSum = texelFetch(u_sums, ivec2(gl_FragCoord.xy), 0);
 #ifdef FLOWTEX_OWN
-  flowtexColour = u_showLevel ? flowtexSum.rgb : flowtexShade(flowtexColour, flowtexSum.a);
-#else
-  flowtexColour = flowtexSum.rgb;
+  if (u_showLevel)
 #endif
+    flowtexColour = flowtexSum.rgb;
+  flowtexColour = flowtexShade(flowtexColour, flowtexSum.a);
 #else
 #ifdef FLOWTEX_TRIANGLES
   flowtexSetCorners(flowtexCornersVSOutput.xyz);
@@ -15,11 +15,13 @@
 #endif
   vec2 flowtexPlaced = flowtexCoordinateVSOutput;
 #ifdef FLOWTEX_IMAGE
-  float flowtexTextured = flowtexValue(flowtexPlaced, flowtexImageVSOutput);
+  flowtexValue(flowtexPlaced, flowtexImageVSOutput);
+  flowtexColour = flowtexPaint(flowtexBelow(flowtexColour, flowtexPlaced));
 #else
-  float flowtexTextured = flowtexValue(flowtexPlaced, flowtexPositionVSOutput);
+  vec2 flowtexTextured = flowtexValue(flowtexPlaced, flowtexPositionVSOutput);
+  flowtexColour = flowtexBelow(flowtexColour, flowtexPlaced);
+  flowtexColour = flowtexShade(flowtexColour, flowtexTextured.x * flowtexTextured.y);
 #endif
-  flowtexColour = flowtexColoured(flowtexColour, flowtexPlaced, flowtexTextured);
 #endif
   ambientColor = ambientIntensity * flowtexColour;
   diffuseColor = diffuseIntensity * flowtexColour;

@@ -1,4 +1,5 @@
-// Colour and texture of the pixels of one layer, by their places in the buffer.
+// The pixels of one layer by their places in the buffer: colour and texture, and the texture again as it is
+// before it fades, with the factor by which it does.
 #ifdef FLOWTEX_TRIANGLES
 uniform highp sampler2DArray u_corners; // nodes of the triangles
 #endif
@@ -18,6 +19,9 @@ void main()
   flowtexSetCorners(texelFetch(u_corners, ivec3(corners, 0), 0).xyz);
 #endif
   FlowtexPlace found = flowtexFindPlace(vec2(pixel) + 0.5, place.xy);
-  float value = flowtexValueAt(found);
-  gl_FragData[0] = vec4(flowtexColoured(u_plainColour, found.coordinate, value), value);
+  vec2 texture_ = flowtexValueAt(found);
+  gl_FragData[0] = vec4(flowtexBelow(u_plainColour, found.coordinate), texture_.x * texture_.y);
+  // What is beside the surface does not count for the local mean.
+  float covered = pixel == ivec2(gl_FragCoord.xy) ? 1.0 : 0.0;
+  gl_FragData[1] = vec4(covered * texture_.x, texture_.y, 0.0, 0.0);
 }

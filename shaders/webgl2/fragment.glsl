@@ -1,4 +1,4 @@
-// The colour of a pixel of a layer, by its place.
+// The sums of a pixel of a layer, by its place: the texture, and what is below it.
 #define FLOWTEX_DEFERRED
 
 //#include common/uniforms.glsl
@@ -25,10 +25,9 @@ uniform bool u_mapped;     // colour by the scalar, or one colour for all
 uniform vec3 u_colour;
 uniform bool u_lit;
 uniform vec3 u_toEye;      // way to the light, which is the camera's own
-uniform vec3 u_ground;     // behind the surface
-uniform float u_opacity;
 
-out vec4 flowtexOut;
+layout(location = 0) out vec4 flowtexUnder;    // colour below the texture, and the light
+layout(location = 1) out vec2 flowtexTextured; // texture before it fades, and the factor by which it does
 
 // The share at a place, between the corners of its triangle.
 float flowtexShareAt(vec2 coordinate, int triangle)
@@ -62,7 +61,7 @@ float flowtexShareAt(vec2 coordinate, int triangle)
 
 #ifdef FLOWTEX_IMAGE
 // The texture at a place, whose coordinate in the image is linear between the nodes.
-float flowtexImageAt(FlowtexPlace place)
+vec2 flowtexImageAt(FlowtexPlace place)
 {
   vec2 at = place.coordinate * u_slicesSize - 0.5 - u_padding;
   ivec2 cell = clamp(ivec2(floor(at)), ivec2(0), textureSize(u_nodes, 0).xy - 2);
@@ -87,23 +86,21 @@ void main()
 #endif
   FlowtexPlace place = flowtexFindPlace(vec2(pixel) + 0.5, uintBitsToFloat(drawn.xy));
 #ifdef FLOWTEX_IMAGE
-  float textured = flowtexImageAt(place);
+  flowtexTextured = flowtexImageAt(place);
 #else
-  float textured = flowtexValueAt(place);
+  flowtexTextured = flowtexValueAt(place);
 #endif
   vec3 colour = u_mapped ? flowtexMapped(flowtexShareAt(place.coordinate, triangle)) : u_colour;
   if (u_showLevel)
     colour = flowtexLevelColour(flowtexNoiseLevel);
 #ifdef FLOWTEX_IMAGE
   colour = flowtexPaint(colour);
-#else
-  colour = flowtexShade(colour, textured);
 #endif
+  float light = 1.0;
   if (u_lit)
   {
     float facing = abs(dot(normalize(place.normal), u_toEye));
-    colour *= min(FLOWTEX_AMBIENT_LIGHT + FLOWTEX_DIFFUSE_LIGHT * facing, 1.0);
+    light = min(FLOWTEX_AMBIENT_LIGHT + FLOWTEX_DIFFUSE_LIGHT * facing, 1.0);
   }
-  // One layer before the ground: no order of drawing to keep.
-  flowtexOut = vec4(mix(u_ground, colour, u_opacity), 1.0);
+  flowtexUnder = vec4(colour, light);
 }

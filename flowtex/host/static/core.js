@@ -199,14 +199,14 @@ precision highp float;
 precision highp int;
 `,ATTRIBUTES=["flowtexPosition","flowtexCoordinate","flowtexNormal","flowtexScalar","flowtexCorners","flowtexRadius"],SAMPLERS=[
 "u_slices","u_slicesNext","u_image","u_stepImage","u_cmap","u_shares","u_along","u_nodes","u_corners","u_open","u_places",
-"u_depths","u_colours","u_strides"],Programs=class{graphics;entries=new Map;parallel=null;constructor(graphics){this.graphics=
-graphics}findFeatures(){this.parallel=this.graphics.context.getExtension("KHR_parallel_shader_compile")}clear(){this.entries.
-clear()}dispose(){for(let entry of this.entries.values()){for(let shader of entry.shaders)this.graphics.free("Shader",shader);
-this.graphics.free("Program",entry.program)}this.clear()}get(vertex,fragment,...defines){let key=[vertex,fragment,...defines].
-join("\0"),entry=this.entries.get(key);return entry||this.entries.set(key,entry=this.build(vertex,fragment,defines)),!entry.
-ready&&!entry.error&&this.finish(entry),entry}build(vertex,fragment,defines){let{graphics}=this,gl=graphics.context,program=graphics.
-counted(gl.createProgram()),kinds=[gl.VERTEX_SHADER,gl.FRAGMENT_SHADER],preamble=PREAMBLE+defines.map(name=>`#define ${name}\
-
+"u_depths","u_colours","u_strides","u_below","u_texture","u_means"],Programs=class{graphics;entries=new Map;parallel=null;constructor(graphics){
+this.graphics=graphics}findFeatures(){this.parallel=this.graphics.context.getExtension("KHR_parallel_shader_compile")}clear(){
+this.entries.clear()}dispose(){for(let entry of this.entries.values()){for(let shader of entry.shaders)this.graphics.free(
+"Shader",shader);this.graphics.free("Program",entry.program)}this.clear()}get(vertex,fragment,...defines){let key=[vertex,
+fragment,...defines].join("\0"),entry=this.entries.get(key);return entry||this.entries.set(key,entry=this.build(vertex,fragment,
+defines)),!entry.ready&&!entry.error&&this.finish(entry),entry}build(vertex,fragment,defines){let{graphics}=this,gl=graphics.
+context,program=graphics.counted(gl.createProgram()),kinds=[gl.VERTEX_SHADER,gl.FRAGMENT_SHADER],preamble=PREAMBLE+defines.
+map(name=>`#define ${name}
 `).join(""),shaders=[vertex,fragment].map((source,n)=>{let shader=graphics.counted(gl.createShader(kinds[n]));return gl.
 shaderSource(shader,source.startsWith("#version")?source:preamble+source),gl.compileShader(shader),gl.attachShader(program,
 shader),shader});return ATTRIBUTES.forEach((name,n)=>gl.bindAttribLocation(program,n,name)),gl.linkProgram(program),{program,
@@ -223,7 +223,7 @@ graphics.context;gl.useProgram(entry.program);for(let[name,value]of Object.entri
 name);if(!uniform)continue;let{location,type}=uniform,numbers=typeof value=="object"?value:[Number(value)];type===gl.FLOAT?
 gl.uniform1fv(location,numbers):type===gl.FLOAT_VEC2?gl.uniform2fv(location,numbers):type===gl.FLOAT_VEC3?gl.uniform3fv(
 location,numbers):type===gl.FLOAT_VEC4?gl.uniform4fv(location,numbers):type===gl.FLOAT_MAT4?gl.uniformMatrix4fv(location,
-!1,numbers):gl.uniform1i(location,numbers[0])}}};var OUTLINE_SAMPLES=4,FRAME_MS=45,MOST_NUMBERS=[4,68],SHARED=Symbol.for("flowtex.gl/3");function drawsFloats(gl){return[
+!1,numbers):type===gl.INT_VEC2?gl.uniform2iv(location,numbers):gl.uniform1i(location,numbers[0])}}};var OUTLINE_SAMPLES=4,FRAME_MS=45,MOST_NUMBERS=[4,68],SHARED=Symbol.for("flowtex.gl/3");function drawsFloats(gl){return[
 "EXT_color_buffer_float","EXT_color_buffer_half_float"].some(name=>gl.getExtension(name)!==null)}var Graphics=class{canvas=document.
 createElement("canvas");gl;programs;users=new Set;waiting=new Set;common=new Map;stock=new Map;tracings=new Map;objects=0;isLost=!1;scheduled=0;picker=null;smooth=null;constructor(){
 this.canvas.width=this.canvas.height=16;let gl=this.canvas.getContext("webgl2",{alpha:!0,antialias:!1,powerPreference:"h\
@@ -391,13 +391,14 @@ eye,scale2(geometry.center,w))),sparse2=isSparse(header,settings),chosen=sparse2
 columns.size,geometry.rows.size],u_deepest:geometry.levels,u_lags:slices.lags,u_lagCount:slices.lags.length,u_sides:s.two_sided||
 signFree||sparse2?slices.sides:1,u_unit:slices.unit,u_rateLayer:slices.count-1,u_cell:slices.cell,u_samples:isMoving(header,
 settings,view.still)?2*s.samples-1:s.samples,u_spacing:s.spacing,u_grain:s.grain*view.density,u_kernel:constants.kernels.
-indexOf(kernel),u_lod:s.lod,u_contrast:s.contrast,u_strength:s.strength,u_fade:signFree?0:s.fade,u_seed:s.seed,u_showLevel:s.
-show_level,u_fixed:s.fixed_grain,...motionUniforms(header,s,view),...noiseOrigin(header,view,finest),...turnUniforms(header,
-view,finest),u_noiseFinest:finest,u_texel:geometry.extent/s.resolution,u_apart:arrowDistance(header,settings)*view.density,
-u_bySpeed:settings.arrow_length==="speed",u_arrowSides:slices.sides,u_pieces:constants.arrows.pieces,...header.image?imageUniforms(
-header.image,s.tiles,view.density):{}}}function isMoving(header,settings,still=!1){let streams=settings.motion!=="off"&&
-!isSignFree(header);return!header.image&&(streams||header.slices.steps>1&&!still)}function isSparse(header,settings){return!header.
-image&&settings.texture==="streaklets"}function hasArrows(header,settings){return Number(settings.arrows)>0&&!isSignFree(
+indexOf(kernel),u_lod:s.lod,u_contrast:s.contrast,u_strength:s.strength,u_even:isEven(header,settings),u_fade:signFree?0:
+s.fade,u_seed:s.seed,u_showLevel:s.show_level,u_fixed:s.fixed_grain,...motionUniforms(header,s,view),...noiseOrigin(header,
+view,finest),...turnUniforms(header,view,finest),u_noiseFinest:finest,u_texel:geometry.extent/s.resolution,u_apart:arrowDistance(
+header,settings)*view.density,u_bySpeed:settings.arrow_length==="speed",u_arrowSides:slices.sides,u_pieces:constants.arrows.
+pieces,...header.image?imageUniforms(header.image,s.tiles,view.density):{}}}function isMoving(header,settings,still=!1){
+let streams=settings.motion!=="off"&&!isSignFree(header);return!header.image&&(streams||header.slices.steps>1&&!still)}function isSparse(header,settings){
+return!header.image&&settings.texture==="streaklets"}function isEven(header,settings){return!!(settings.lod&&!settings.fixed_grain)&&
+!header.image&&!isSparse(header,settings)}function hasArrows(header,settings){return Number(settings.arrows)>0&&!isSignFree(
 header)&&!header.image}function arrowDistance({constants},{arrows}){return constants.arrows.least*Math.max(Number(arrows),
 constants.arrows.mostDense)}function isNear(header,settings,view){let{geometry,slices,constants}=header,s=settings,gap=Math.
 hypot(...subtract2(view.eye,geometry.center))-.5*geometry.extent,away=view.eye[3]?Math.max(gap,0)/Math.hypot(...subtract2(
@@ -832,7 +833,25 @@ shape,at=(of,count2)=>{let[own,one,two]=nodes.map(of);return clamp(own+s*(one-ow
 to,between3]=moment,values={},others=scalars.choices.map((choice,number)=>({...choice,number}));for(let each of[scalars,
 ...others]){let names=scene.scalarParts(from,to,each),[before,after]=names.map(part=>parts.get(part)?.data);if(each.name===
 null||each.name in values||!before||!after)continue;let value=n=>before[n]+between3*(after[n]-before[n]);values[each.name]=
-each.flat?value(cell):interpolated(corners,value)}return values}var MOST_SIDE_PX=3,PLACE3=5;function mostDoublings({shape:shape2,triangles},blocks,positions2,cells){let[rows,columns]=blocks.
+each.flat?value(cell):interpolated(corners,value)}return values}function evenBlocks({sigma,radii},grain,width,height){let deviation=sigma*grain,side=2**Math.max(Math.floor(Math.log2(Math.
+SQRT2*deviation)),0),own=side>1?.25:0,variance=(deviation/side)**2-own,[columns,rows]=[width,height].map(pixels=>Math.ceil(
+pixels/side)+2);return{side,columns,rows,variance,reach:Math.ceil(radii*Math.sqrt(variance))}}var UNIT=SAMPLERS.indexOf(
+"u_means"),LocalMeans=class{graphics;targets=[];columns=0;rows=0;constructor(graphics){this.graphics=graphics}draw(means,blur,blocks,width,height){
+let{graphics}=this,gl=graphics.context,{side,columns,rows,variance,reach}=blocks;this.fit(columns,rows),gl.bindVertexArray(
+null),gl.viewport(0,0,columns,rows);for(let test of[gl.SCISSOR_TEST,gl.DEPTH_TEST,gl.BLEND])gl.disable(test);let[first,second]=this.
+targets;graphics.programs.use(means,{u_pixels:[width,height],u_side:side}),this.pass(first);let values={u_blocks:[columns,
+rows],u_variance:variance,u_reach:reach};graphics.programs.use(blur,{...values,u_along:[1,0]}),this.pass(second,first),graphics.
+programs.use(blur,{u_along:[0,1]}),this.pass(first,second),this.bind(first)}dispose(){for(let{frame,texture}of this.targets)
+this.graphics.free("Framebuffer",frame),this.graphics.free("Texture",texture);this.targets=[],this.columns=this.rows=0}pass(to,from){
+let gl=this.graphics.context;from&&this.bind(from),gl.bindFramebuffer(gl.FRAMEBUFFER,to.frame),gl.drawArrays(gl.TRIANGLES,
+0,3)}bind({texture}){let gl=this.graphics.context;gl.activeTexture(gl.TEXTURE0+UNIT),gl.bindTexture(gl.TEXTURE_2D,texture),
+gl.activeTexture(gl.TEXTURE0+SAMPLERS.length)}fit(columns,rows){if(this.columns>=columns&&this.rows>=rows)return;let[wide,
+high]=[Math.max(columns,this.columns),Math.max(rows,this.rows)];this.dispose();let{graphics}=this,gl=graphics.context;this.
+targets=[0,1].map(()=>{let texture=graphics.counted(gl.createTexture());gl.bindTexture(gl.TEXTURE_2D,texture),gl.texStorage2D(
+gl.TEXTURE_2D,1,gl.R32F,wide,high),gl.texParameteri(gl.TEXTURE_2D,gl.TEXTURE_MIN_FILTER,gl.NEAREST),gl.texParameteri(gl.
+TEXTURE_2D,gl.TEXTURE_MAG_FILTER,gl.NEAREST);let frame=graphics.counted(gl.createFramebuffer());return gl.bindFramebuffer(
+gl.FRAMEBUFFER,frame),gl.framebufferTexture2D(gl.FRAMEBUFFER,gl.COLOR_ATTACHMENT0,gl.TEXTURE_2D,texture,0),{frame,texture}}),
+[this.columns,this.rows]=[wide,high]}};var MOST_SIDE_PX=3,PLACE3=5;function mostDoublings({shape:shape2,triangles},blocks,positions2,cells){let[rows,columns]=blocks.
 shape,most=new Int8Array(rows*columns).fill(triangles?0:Math.log2(cells));for(let n=0;n<positions2.length;n+=3){if(Number.
 isFinite(positions2[n]))continue;let[j,i]=[Math.floor(n/3/shape2[1]),n/3%shape2[1]];for(let row2 of[Math.floor((j-1)/cells),
 Math.floor(j/cells)])for(let column of[Math.floor((i-1)/cells),Math.floor(i/cells)])row2>=0&&row2<rows&&column>=0&&column<
@@ -846,60 +865,69 @@ levels,box}}function boundsOf(camera,[x,y,z,radius]){let[right,up,ahead]=camera.
 state,way=subtract2([x,y,z],parallel?focus:position),ends2=[-radius,radius].map(by=>camera.at(add([x,y,z],ahead,by)).height);
 if(!(ends2[0]>0))return[-1,-1,1,1];let[low,high]=[-radius,radius].map(by=>[dot2(way,right)/camera.aspect,dot2(way,up)].map(
 (at,axis)=>ends2.map(height=>(at+by/(axis?1:camera.aspect))/height)));return[...low.map(each=>Math.min(...each)),...high.
-map(each=>Math.max(...each))]}var MOST_SQUARES=1024,UNITS2=["u_places","u_depths","u_colours","u_strides"].map(name=>SAMPLERS.indexOf(name)),Places=class{width=0;height=0;graphics;target=null;key="";layers=[];seen=[];squares=0;constructor(graphics){
-this.graphics=graphics}draw({layers,camera,anchor,width,height}){let drawn=layers.map(({scene,covered})=>[scene.number,scene.
-version,covered]),key=JSON.stringify([drawn,camera.state,camera.aspect,anchor,width,height]);if(key===this.key)return;Object.
-assign(this,{key,layers,width,height});let gl=this.graphics.context,{frames}=this.make(width,height),[{scene:root}]=layers,
-most=Math.min(...layers.map(({key:[step]})=>step))+Math.log2(root.header.mesh.tileCells);this.seen=layers.map(({scene,covered,
-key:[step]})=>{let doublings=scene.doublings.map(own=>Math.max(Math.min(own,most-step),0));return seenBlocks(scene.blocks,
-camera,height,covered,doublings)}),this.sendStrides(),gl.bindFramebuffer(gl.FRAMEBUFFER,frames[0]),gl.viewport(0,0,width,
-height),gl.disable(gl.SCISSOR_TEST),gl.enable(gl.DEPTH_TEST),gl.depthFunc(gl.LESS),gl.disable(gl.BLEND),gl.clearBufferuiv(
-gl.COLOR,0,[0,0,0,0]),gl.clear(gl.DEPTH_BUFFER_BIT);let matrix=projection(root.header.geometry,camera,anchor);root.bodies.
-hide(matrix,anchor),root.bodies.seeThrough(()=>this.triangles(root.programs("place"),matrix,anchor),!1)}triangles(program,matrix,anchor,values={}){
-let{graphics,layers,seen}=this,gl=graphics.context,{mesh,pyramid,geometry}=layers[0].scene.header,[rows,columns]=pyramid?.
-shapes[0]??geometry.shape;this.bind(),gl.bindVertexArray(null),layers.forEach(({scene,key:[step,...tile]},n)=>{let{levels}=seen[n],
-{columns:u,rows:v2,shape:shape2,triangles}=scene.header.geometry,[top,left]=tile.map(at=>at*mesh.tileCells*(pyramid?.tileBlocks??
-0)*2**step);scene.bindNodes(anchor),graphics.programs.use(program,{...values,u_matrix:matrix,u_layer:n+1,u_blocks:levels.
-reduce((bits,level,block)=>bits|(level<0?0:1<<block),0),u_part:[left,top,step],u_lastNode:[columns-1,rows-1,this.squares],
-u_closed:[Number(geometry.periodic[1]),Number(geometry.periodic[0])],u_blockCells:mesh.tileCells,u_slicesSize:[u.size,v2.
-size],u_padding:[u.before,v2.before]}),triangles&&gl.drawArrays(gl.TRIANGLES,0,scene.part("triangles").data.length);let across=scene.
-blocks.shape[1];levels.forEach((level,block)=>{if(level<0||triangles)return;let first=[block%across,Math.floor(block/across)].
-map(at=>at*mesh.tileCells),[x,y]=first.map((at,k)=>Math.ceil(Math.min(mesh.tileCells,shape2[1-k]-1-at)/2**level));graphics.
-programs.use(program,{u_block:[...first,level,x]}),gl.drawArrays(gl.TRIANGLES,0,6*x*y)})})}sum(program,top,rows,valuesOf){
-let{graphics,width,height,target}=this,gl=graphics.context,bottom=height-top-rows;gl.bindFramebuffer(gl.FRAMEBUFFER,target?.
-frames[1]??null),gl.viewport(0,0,width,height),gl.enable(gl.SCISSOR_TEST),gl.disable(gl.DEPTH_TEST),gl.disable(gl.BLEND),
-gl.bindVertexArray(null),this.layers.forEach(({scene},n)=>{let[left,low,right,high]=this.seen[n].box.map((at,side)=>(.5+
-.5*at)*(side%2?height:width)),[x,y]=[Math.max(Math.floor(left),0),Math.max(Math.floor(low),bottom)],[w,h]=[Math.min(Math.
-ceil(right),width)-x,Math.min(Math.ceil(high),bottom+rows)-y];if(w<=0||h<=0)return;gl.scissor(x,y,w,h);let values=valuesOf(
-scene);this.bind(),graphics.programs.use(program,{...values,u_layer:n+1}),gl.drawArrays(gl.TRIANGLES,0,3)}),gl.readPixels(
-0,0,1,1,gl.RGBA,gl.UNSIGNED_BYTE,new Uint8Array(4)),gl.bindFramebuffer(gl.FRAMEBUFFER,null)}show(program){let gl=this.graphics.
-context;this.bind(),gl.bindVertexArray(null),this.graphics.programs.use(program,{u_bottom:0}),gl.drawArrays(gl.TRIANGLES,
-0,3)}at(x,y){let{graphics,target,layers}=this,gl=graphics.context,[column,row2]=[(.5+.5*x)*this.width,(.5+.5*y)*this.height],
-left=clamp(Math.floor(column-.5),0,this.width-2),low=clamp(Math.floor(row2-.5),0,this.height-2),bits=new Uint32Array(16);
-gl.bindFramebuffer(gl.FRAMEBUFFER,target?.frames[0]??null),gl.readPixels(left,low,2,2,gl.RGBA_INTEGER,gl.UNSIGNED_INT,bits),
-gl.bindFramebuffer(gl.FRAMEBUFFER,null);let own=+(column>=left+1)+2*+(row2>=low+1),at=4*([own,own^1,own^2,own^3].find(n=>bits[4*
-n+3])??own),[u,v2]=new Float32Array(bits.buffer,4*at,2);return bits[at+3]?{layer:layers[bits[at+3]-1],coordinate:[u,v2],
-triangle:bits[at+2]}:null}dispose(){let{graphics,target}=this;for(let texture of target?.textures??[])graphics.free("Tex\
-ture",texture);for(let frame of target?.frames??[])graphics.free("Framebuffer",frame);this.target=null,this.key=""}sendStrides(){
-let{layers,seen,target}=this,gl=this.graphics.context,[{scene:root}]=layers,{pyramid,geometry}=root.header,finest=geometry.
-triangles?[1,1]:pyramid?.blocks[0]??root.blocks.shape;this.squares=Math.max(Math.ceil(Math.log2(Math.max(...finest)/MOST_SQUARES)),
-0);let scale3=2**-this.squares,[rows,columns]=finest.map(n=>Math.ceil(n*scale3)),strides=new Uint8Array(rows*columns);layers.
-forEach(({scene,key:[step,...tile]},n)=>{let across=scene.blocks.shape[1],size=2**step*scale3;seen[n].levels.forEach((level,block)=>{
-if(level<0||geometry.triangles)return;let[[top,bottom],[left,right]]=[Math.floor(block/across),block%across].map((at,k)=>{
-let first=(at+tile[k]*(pyramid?.tileBlocks??0))*size;return[Math.floor(first),Math.min(Math.ceil(first+size),[rows,columns][k])]});
-for(let j=top;j<bottom;j+=1)for(let i=left+j*columns;i<right+j*columns;i+=1)strides[i]=Math.max(strides[i],step+level)})}),
-gl.activeTexture(gl.TEXTURE0+UNITS2[3]),gl.bindTexture(gl.TEXTURE_2D,target?.textures[3]??null),gl.pixelStorei(gl.UNPACK_ALIGNMENT,
-1),gl.texImage2D(gl.TEXTURE_2D,0,gl.R8UI,columns,rows,0,gl.RED_INTEGER,gl.UNSIGNED_BYTE,strides)}make(width,height){let{
-target,graphics}=this;if(target&&target.width>=width&&target.height>=height)return target;let gl=graphics.context,{key}=this,
-size={width:Math.max(width,target?.width??0),height:Math.max(height,target?.height??0)};this.dispose();let textures=[gl.
-RGBA32UI,gl.DEPTH_COMPONENT24,gl.RGBA8,0].map(format=>{let texture=graphics.counted(gl.createTexture());return gl.bindTexture(
-gl.TEXTURE_2D,texture),format&&gl.texStorage2D(gl.TEXTURE_2D,1,format,size.width,size.height),gl.texParameteri(gl.TEXTURE_2D,
-gl.TEXTURE_MIN_FILTER,gl.NEAREST),gl.texParameteri(gl.TEXTURE_2D,gl.TEXTURE_MAG_FILTER,gl.NEAREST),texture}),frames=[[textures[0],
-textures[1]],[textures[2]]].map(attached=>{let frame=graphics.counted(gl.createFramebuffer());return gl.bindFramebuffer(
-gl.FRAMEBUFFER,frame),attached.forEach((texture,n)=>{let point=n?gl.DEPTH_ATTACHMENT:gl.COLOR_ATTACHMENT0;gl.framebufferTexture2D(
-gl.FRAMEBUFFER,point,gl.TEXTURE_2D,texture,0)}),frame});return this.key=key,this.target={frames,textures,...size}}bind(){
-let gl=this.graphics.context;UNITS2.forEach((unit3,n)=>{gl.activeTexture(gl.TEXTURE0+unit3),gl.bindTexture(gl.TEXTURE_2D,
-this.target?.textures[n]??null)}),gl.activeTexture(gl.TEXTURE0+SAMPLERS.length)}};function invert(out,a){var aa=a[0],ab=a[1],ac=a[2],ad=a[3],atx=a[4],aty=a[5],det=aa*ad-ab*ac;return det?(det=1/det,out[0]=
+map(each=>Math.max(...each))]}var MOST_SQUARES=1024,UNITS2=["u_places","u_depths","u_colours","u_strides","u_below","u_texture"].map(name=>SAMPLERS.indexOf(
+name)),Places=class{width=0;height=0;graphics;means;target=null;key="";layers=[];seen=[];squares=0;constructor(graphics){
+this.graphics=graphics,this.means=new LocalMeans(graphics)}draw({layers,camera,anchor,width,height}){let drawn=layers.map(
+({scene,covered})=>[scene.number,scene.version,covered]),key=JSON.stringify([drawn,camera.state,camera.aspect,anchor,width,
+height]);if(key===this.key)return;Object.assign(this,{key,layers,width,height});let gl=this.graphics.context,{frames}=this.
+make(width,height),[{scene:root}]=layers,most=Math.min(...layers.map(({key:[step]})=>step))+Math.log2(root.header.mesh.tileCells);
+this.seen=layers.map(({scene,covered,key:[step]})=>{let doublings=scene.doublings.map(own=>Math.max(Math.min(own,most-step),
+0));return seenBlocks(scene.blocks,camera,height,covered,doublings)}),this.sendStrides(),gl.bindFramebuffer(gl.FRAMEBUFFER,
+frames[0]),gl.viewport(0,0,width,height),gl.disable(gl.SCISSOR_TEST),gl.enable(gl.DEPTH_TEST),gl.depthFunc(gl.LESS),gl.disable(
+gl.BLEND),gl.clearBufferuiv(gl.COLOR,0,[0,0,0,0]),gl.clear(gl.DEPTH_BUFFER_BIT);let matrix=projection(root.header.geometry,
+camera,anchor);root.bodies.hide(matrix,anchor),root.bodies.seeThrough(()=>this.triangles(root.programs("place"),matrix,anchor),
+!1)}triangles(program,matrix,anchor,values={}){let{graphics,layers,seen}=this,gl=graphics.context,{mesh,pyramid,geometry}=layers[0].
+scene.header,[rows,columns]=pyramid?.shapes[0]??geometry.shape;this.bind(),gl.bindVertexArray(null),layers.forEach(({scene,
+key:[step,...tile]},n)=>{let{levels}=seen[n],{columns:u,rows:v2,shape:shape2,triangles}=scene.header.geometry,[top,left]=tile.
+map(at=>at*mesh.tileCells*(pyramid?.tileBlocks??0)*2**step);scene.bindNodes(anchor),graphics.programs.use(program,{...values,
+u_matrix:matrix,u_layer:n+1,u_blocks:levels.reduce((bits,level,block)=>bits|(level<0?0:1<<block),0),u_part:[left,top,step],
+u_lastNode:[columns-1,rows-1,this.squares],u_closed:[Number(geometry.periodic[1]),Number(geometry.periodic[0])],u_blockCells:mesh.
+tileCells,u_slicesSize:[u.size,v2.size],u_padding:[u.before,v2.before]}),triangles&&gl.drawArrays(gl.TRIANGLES,0,scene.part(
+"triangles").data.length);let across=scene.blocks.shape[1];levels.forEach((level,block)=>{if(level<0||triangles)return;let first=[
+block%across,Math.floor(block/across)].map(at=>at*mesh.tileCells),[x,y]=first.map((at,k)=>Math.ceil(Math.min(mesh.tileCells,
+shape2[1-k]-1-at)/2**level));graphics.programs.use(program,{u_block:[...first,level,x]}),gl.drawArrays(gl.TRIANGLES,0,6*
+x*y)})})}sum(program,top,rows,valuesOf){let{graphics,width,height,target}=this,gl=graphics.context,bottom=height-top-rows;
+gl.bindFramebuffer(gl.FRAMEBUFFER,target?.frames[1]??null),gl.enable(gl.SCISSOR_TEST),gl.scissor(0,bottom,width,rows),gl.
+clearBufferfv(gl.COLOR,1,[0,0,0,0]),this.pixels(program,bottom,rows,valuesOf),gl.readPixels(0,0,1,1,gl.RGBA,gl.FLOAT,new Float32Array(
+4)),gl.bindFramebuffer(gl.FRAMEBUFFER,null)}colour(blocks,valuesOf){let{graphics,layers,means,width,height,target}=this,
+gl=graphics.context,[{scene:root}]=layers;this.bind(),blocks&&means.draw(root.programs("blocks"),root.programs("blur"),blocks,
+width,height),gl.bindFramebuffer(gl.FRAMEBUFFER,target?.frames[2]??null);let side=blocks?.side??1;this.pixels(root.programs(
+"colour"),0,height,scene=>({...valuesOf(scene),u_side:side})),gl.bindFramebuffer(gl.FRAMEBUFFER,null)}pixels(program,bottom,rows,valuesOf){
+let{graphics,width,height}=this,gl=graphics.context;gl.viewport(0,0,width,height),gl.enable(gl.SCISSOR_TEST),gl.disable(
+gl.DEPTH_TEST),gl.disable(gl.BLEND),gl.bindVertexArray(null),this.layers.forEach(({scene},n)=>{let[left,low,right,high]=this.
+seen[n].box.map((at,side)=>(.5+.5*at)*(side%2?height:width)),[x,y]=[Math.max(Math.floor(left),0),Math.max(Math.floor(low),
+bottom)],[w,h]=[Math.min(Math.ceil(right),width)-x,Math.min(Math.ceil(high),bottom+rows)-y];if(w<=0||h<=0)return;gl.scissor(
+x,y,w,h);let values=valuesOf(scene);this.bind(),graphics.programs.use(program,{...values,u_layer:n+1}),gl.drawArrays(gl.
+TRIANGLES,0,3)})}show(program){let gl=this.graphics.context;this.bind(),gl.bindVertexArray(null),this.graphics.programs.
+use(program,{u_bottom:0}),gl.drawArrays(gl.TRIANGLES,0,3)}at(x,y){let{graphics,target,layers}=this,gl=graphics.context,[
+column,row2]=[(.5+.5*x)*this.width,(.5+.5*y)*this.height],left=clamp(Math.floor(column-.5),0,this.width-2),low=clamp(Math.
+floor(row2-.5),0,this.height-2),bits=new Uint32Array(16);gl.bindFramebuffer(gl.FRAMEBUFFER,target?.frames[0]??null),gl.readPixels(
+left,low,2,2,gl.RGBA_INTEGER,gl.UNSIGNED_INT,bits),gl.bindFramebuffer(gl.FRAMEBUFFER,null);let own=+(column>=left+1)+2*+(row2>=
+low+1),at=4*([own,own^1,own^2,own^3].find(n=>bits[4*n+3])??own),[u,v2]=new Float32Array(bits.buffer,4*at,2);return bits[at+
+3]?{layer:layers[bits[at+3]-1],coordinate:[u,v2],triangle:bits[at+2]}:null}dispose(){let{graphics,target}=this;for(let texture of target?.
+textures??[])graphics.free("Texture",texture);for(let frame of target?.frames??[])graphics.free("Framebuffer",frame);this.
+means.dispose(),this.target=null,this.key=""}sendStrides(){let{layers,seen,target}=this,gl=this.graphics.context,[{scene:root}]=layers,
+{pyramid,geometry}=root.header,finest=geometry.triangles?[1,1]:pyramid?.blocks[0]??root.blocks.shape;this.squares=Math.max(
+Math.ceil(Math.log2(Math.max(...finest)/MOST_SQUARES)),0);let scale3=2**-this.squares,[rows,columns]=finest.map(n=>Math.
+ceil(n*scale3)),strides=new Uint8Array(rows*columns);layers.forEach(({scene,key:[step,...tile]},n)=>{let across=scene.blocks.
+shape[1],size=2**step*scale3;seen[n].levels.forEach((level,block)=>{if(level<0||geometry.triangles)return;let[[top,bottom],
+[left,right]]=[Math.floor(block/across),block%across].map((at,k)=>{let first=(at+tile[k]*(pyramid?.tileBlocks??0))*size;
+return[Math.floor(first),Math.min(Math.ceil(first+size),[rows,columns][k])]});for(let j=top;j<bottom;j+=1)for(let i=left+
+j*columns;i<right+j*columns;i+=1)strides[i]=Math.max(strides[i],step+level)})}),gl.activeTexture(gl.TEXTURE0+UNITS2[3]),
+gl.bindTexture(gl.TEXTURE_2D,target?.textures[3]??null),gl.pixelStorei(gl.UNPACK_ALIGNMENT,1),gl.texImage2D(gl.TEXTURE_2D,
+0,gl.R8UI,columns,rows,0,gl.RED_INTEGER,gl.UNSIGNED_BYTE,strides)}make(width,height){let{target,graphics}=this;if(target&&
+target.width>=width&&target.height>=height)return target;let gl=graphics.context,{key}=this,size={width:Math.max(width,target?.
+width??0),height:Math.max(height,target?.height??0)};this.dispose();let textures=[gl.RGBA32UI,gl.DEPTH_COMPONENT24,gl.RGBA8,
+0,gl.RGBA16F,gl.RG16F].map(format=>{let texture=graphics.counted(gl.createTexture());return gl.bindTexture(gl.TEXTURE_2D,
+texture),format&&gl.texStorage2D(gl.TEXTURE_2D,1,format,size.width,size.height),gl.texParameteri(gl.TEXTURE_2D,gl.TEXTURE_MIN_FILTER,
+gl.NEAREST),gl.texParameteri(gl.TEXTURE_2D,gl.TEXTURE_MAG_FILTER,gl.NEAREST),texture}),[first,second]=[gl.COLOR_ATTACHMENT0,
+gl.COLOR_ATTACHMENT1],[places,depths,colours,,below,sums]=textures,frames=[[[first,places],[gl.DEPTH_ATTACHMENT,depths]],
+[[first,below],[second,sums]],[[first,colours]]].map(attached=>{let frame=graphics.counted(gl.createFramebuffer());gl.bindFramebuffer(
+gl.FRAMEBUFFER,frame);for(let[point,texture]of attached)gl.framebufferTexture2D(gl.FRAMEBUFFER,point,gl.TEXTURE_2D,texture,
+0);return gl.drawBuffers(attached.map(([point])=>point).filter(point=>point!==gl.DEPTH_ATTACHMENT)),frame});return this.
+key=key,this.target={frames,textures,...size}}bind(){let gl=this.graphics.context;UNITS2.forEach((unit3,n)=>{gl.activeTexture(
+gl.TEXTURE0+unit3),gl.bindTexture(gl.TEXTURE_2D,this.target?.textures[n]??null)}),gl.activeTexture(gl.TEXTURE0+SAMPLERS.
+length)}};function invert(out,a){var aa=a[0],ab=a[1],ac=a[2],ad=a[3],atx=a[4],aty=a[5],det=aa*ad-ab*ac;return det?(det=1/det,out[0]=
 ad*det,out[1]=-ab*det,out[2]=-ac*det,out[3]=aa*det,out[4]=(ac*aty-ad*atx)*det,out[5]=(ab*atx-aa*aty)*det,out):null}function determinant(a){
 return a[0]*a[3]-a[1]*a[2]}function multiply(out,a,b){var a0=a[0],a1=a[1],a2=a[2],a3=a[3],a4=a[4],a5=a[5],b0=b[0],b1=b[1],
 b2=b[2],b3=b[3],b4=b[4],b5=b[5];return out[0]=a0*b0+a2*b1,out[1]=a1*b0+a3*b1,out[2]=a0*b2+a2*b3,out[3]=a1*b2+a3*b3,out[4]=
@@ -923,71 +951,77 @@ playing&&!this.viewer.isHeld,time=movingTime(price,this.fixed,width*height,sampl
 MOVING_LEAST_MS),best=quality(price,this.fixed,width*height,samples,budget),w=Math.max(Math.round(width*best.scale),1),h=Math.
 max(Math.round(height*best.scale),1);this.draftVersion=this.version;let reuse=best.scale<1?this.reuse():null;if(!reuse?.
 covers){let started=performance.now();this.place(shown,w,h);let summed=this.sum(program,shown,0,h,best.samples);this.show(
-shown,!1),this.fixed+=.5*(clamp(performance.now()-started-summed,.5,500)-this.fixed)}reuse&&this.pen&&(this.pen.imageSmoothingEnabled=
-!reuse.shifts,this.pen.setTransform(...reuse.matrix),replace(this.pen,this.last),this.pen.setTransform(1,0,0,1,0,0)),this.
-isCoarse=best.scale<1||best.samples<samples;let isWhole=!this.isCoarse&&!this.content.smooth;return isWhole&&this.complete(),
-this.drawLines(shown),isWhole&&!this.isRefined}strip(program,shown){let{width,height}=this.canvas,samples=Number(this.viewer.
-settings.samples);if(this.rowsDone>=height&&(this.rowsDone=0),this.rowsDone===0&&(this.arrange(shown),this.isRefined))return!1;
-this.place(shown,width,height);let price=program.price*this.factor(samples),rows=Math.min(height-this.rowsDone,rowsIn(STRIP_MS,
-price,width,samples));return this.sum(program,shown,this.rowsDone,rows,samples),this.rowsDone+=rows,this.rowsDone<height?
-!1:(this.show(shown,this.content.smooth),this.complete(),this.drawLines(shown),!0)}drawLines(shown){let{front,frontPen,graphics}=this,
-{camera,ratio}=this.viewer,{scene}=this.content,{width,height}=this.canvas;if(!scene||!camera||!frontPen)return;let{earth,
-bodies}=scene;if(!earth.lines.length&&!bodies.labels.length)return;let{state,aspect}=camera,look=JSON.stringify([state,aspect,
-width,height,earth.lines,earth.version]);if(look!==this.frontLook){let{anchor}=this.viewer.view(shown,ratio),{canvas}=graphics;
-canvas.width<width&&(canvas.width=width),canvas.height<height&&(canvas.height=height),front.width=width,front.height=height,
-earth.drawLines({camera,anchor,width,height,ratio},()=>{let top=canvas.height-height;frontPen.drawImage(canvas,0,top,width,
-height,0,0,width,height)}),bodies.drawLabels(frontPen,{camera,anchor,width,height,ratio}),this.frontLook=look}this.pen?.
-drawImage(front,0,0)}complete(){let{camera,player}=this.viewer;this.rowsDone=this.canvas.height,this.isCoarse=!1,this.draftVersion=
-this.version,replace(this.lastPen,this.canvas),camera&&!player.playing&&(this.lastCamera=new Camera(camera.state,camera.
-limits,camera.flat,camera.aspect))}reuse(){let{lastCamera}=this,{camera}=this.viewer,{scene}=this.content;if(!scene?.header.
-geometry.planar||!camera||!lastCamera||!camera.state.parallel||!lastCamera.state.parallel)return null;let{geometry}=scene.
-header,focus=subtract2(camera.state.focal_point,geometry.center),anchor=toFrame(geometry.frame,focus),[before,now]=[lastCamera,
-camera].map(view=>projection(geometry,view,anchor));return reused(before,now,this.canvas.width,this.canvas.height)}factor(samples){
-let{settings,player}=this.viewer;return settings.motion!=="off"||player.varies&&player.playing?motionFactor(samples):1}placeAt(shown,x,y){
-let{places}=this.content;return this.place(shown,places?.width||this.canvas.width,places?.height||this.canvas.height),places?.
-at(x,y)??null}place(shown,width,height){let{viewer,layers,content}=this,{camera}=viewer;if(!camera||!layers.length)return;
-let{anchor}=viewer.view(shown,this.density(height));content.places?.draw({layers,camera,anchor,width,height})}density(height){
-return this.viewer.ratio*height/this.canvas.height}sum(program,shown,top,rows,samples){let{places,scene}=this.content,{camera}=this.
-viewer;if(!places||!scene||!camera)return 0;let{width,height}=places,view=this.viewer.view(shown,this.density(height)),draft=samples!==
-this.viewer.settings.samples||height!==this.canvas.height,valuesOf=layer=>(layer.bindNodes(view.anchor),layer.bindTextures(
-shown[0],shown[1]),{...this.values(layer,scene,camera,view,samples,draft),...rays(layer.header.geometry,camera,view.anchor,
-width,height)});program.warm||places.sum(program,top,1,valuesOf),program.warm=!0;let started=performance.now();places.sum(
-program,top,rows,valuesOf);let spent=performance.now()-started;return program.price=learnedPrice(program.price,spent,width*
-rows,samples,this.factor(samples)),spent}show(shown,smooth){let{places}=this.content;if(!places)return;let{width,height}=places,
-{canvas}=this.graphics;canvas.width<width&&(canvas.width=width),canvas.height<height&&(canvas.height=height);let most=smooth?
-SMOOTH_ROWS:height;for(let bottom=0;bottom<height;bottom+=most)this.render(shown,bottom,Math.min(most,height-bottom),smooth)}render(shown,bottom,rows,smooth){
-let{graphics,viewer}=this,{camera}=viewer,{scene,places}=this.content;if(!camera||!scene||!places)return;let gl=graphics.
-context,{width,height}=places,view=viewer.view(shown,this.density(height));smooth?graphics.bindSmooth(width,rows):gl.bindFramebuffer(
-gl.FRAMEBUFFER,null),gl.viewport(0,-bottom,width,height),gl.enable(gl.SCISSOR_TEST),gl.scissor(0,0,width,rows),gl.enable(
-gl.DEPTH_TEST),gl.depthFunc(gl.LESS),gl.disable(gl.BLEND),gl.disable(gl.CULL_FACE);let[r,g,b]=scene.header.background??[
-1,1,1];gl.clearColor(r,g,b,viewer.isClear?0:1),gl.clear(gl.COLOR_BUFFER_BIT|gl.DEPTH_BUFFER_BIT);let around2={camera,anchor:view.
-anchor,width,height,ratio:viewer.ratio};scene.earth.drawGround(around2);let{bodies}=scene;bodies.draw(around2,"opaque"),
-bodies.seeThrough(()=>{if(!smooth)return places.show(scene.programs("surface"));let matrix=projection(scene.header.geometry,
-camera,view.anchor);places.triangles(scene.programs("smooth"),matrix,view.anchor,{u_bottom:bottom})}),this.drawArrows(shown,
-view,width,height),bodies.draw(around2,"clear"),scene.marks.draw({...around2,ratio:view.density},viewer.settings,shown),
-smooth&&graphics.copySmooth(width,rows),this.copy(width,height,bottom,rows)}drawArrows(shown,view,width,height){let{camera,
-settings}=this.viewer,{scene}=this.content;if(!scene||!camera||!hasArrows(scene.header,settings))return;let seen={...camera.
-sight(height/view.density),planes:camera.planes},draft=height!==this.canvas.height,layers=this.layers.map(layer=>layer.scene);
-for(let[layer,placed]of scene.arrows.share(seen,settings,layers)){let{arrows,header}=layer,program=arrows.program(settings,
-isNear(header,settings,view));if(!program||!placed.length)continue;layer.bindTextures(shown[0],shown[1]);let painted=layer.
-scalarParts(shown[0],shown[1]),values=this.values(layer,scene,camera,view,Number(settings.samples),draft);arrows.draw(program,
-placed,painted,view.anchor,{...values,u_picture:[width,height]})}}values({header},{bodies},camera,view,samples,draft){let{
-settings}=this.viewer,{columns,rows}=header.geometry,plain=header.scalars.name!==null&&hasArrows(header,settings)&&settings.
-arrow_color==="scalars";return{...uniforms(header,{...settings,samples},view),...draft?draftUniforms(settings,samples,view.
-density):{},u_matrix:projection(header.geometry,camera,view.anchor),u_mapped:header.scalars.name!==null&&!plain,u_plain:plain,
-u_flat:!!header.scalars.flat,u_padding:[columns.before,rows.before],u_colour:header.colour,u_lit:header.lighting,u_ground:header.
-background??[1,1,1],u_opacity:bodies.areBehind?1:header.opacity,u_toEye:toFrame(header.geometry.frame,scale2(camera.axes[2],
--1))}}copy(width,height,bottom,rows){let{pen}=this;if(!pen)return;let{canvas}=this.graphics,first=canvas.height-rows,[w,
-scaled]=[this.canvas.width,this.canvas.height/height];if(pen.imageSmoothingEnabled=w!==width||scaled!==1,pen.imageSmoothingEnabled){
-let{coarse,coarsePen}=this;coarse.width=width,coarse.height=rows,coarsePen?.drawImage(canvas,0,first,width,rows,0,0,width,
-rows),[canvas,first]=[coarse,0]}let to=(height-bottom-rows)*scaled;pen.clearRect(0,to,w,rows*scaled),pen.drawImage(canvas,
-0,first,width,rows,0,to,w,rows*scaled)}},GREATEST_GROWTH=4,LEAST_GROWTH=.3,ROUNDING3=1e-6,product=(a,b)=>multiply([0,0,0,
-0,0,0],a,b),inverse=a=>invert([0,0,0,0,0,0],a);function reused(before,now,width,height){let[w,h]=[width/2,height/2],toPixels=m=>product(
-[w,0,0,-h,w,h],[m[0],m[1],m[4],m[5],m[12],m[13]]),matrix=product(toPixels(now),inverse(toPixels(before))),area=Math.abs(
-determinant(matrix));if(!(area>LEAST_GROWTH**2&&area<GREATEST_GROWTH**2))return null;let[a,b,c,d,e,f]=inverse(matrix),isInside=([
-x,y])=>Math.abs((a*x+c*y+e)/w-1)<1+ROUNDING3&&Math.abs((b*x+d*y+f)/h-1)<1+ROUNDING3,covers=[[0,0],[width,0],[0,height],[
-width,height]].every(isInside),[xx,xy,yx,yy]=matrix,shifts=Math.abs(xx-1)+Math.abs(yy-1)+Math.abs(xy)+Math.abs(yx)<ROUNDING3;
-if(shifts)for(let n of[4,5])matrix[n]=Math.round(matrix[n]);return{matrix,covers,shifts}}var CORNERS=4,ArrowSeeds=class{surface;limits;sums;whole=[[]];last=null;constructor(surface,limits){this.surface=surface,
+shown,!1,best.samples),this.fixed+=.5*(clamp(performance.now()-started-summed,.5,500)-this.fixed)}reuse&&this.pen&&(this.
+pen.imageSmoothingEnabled=!reuse.shifts,this.pen.setTransform(...reuse.matrix),replace(this.pen,this.last),this.pen.setTransform(
+1,0,0,1,0,0)),this.isCoarse=best.scale<1||best.samples<samples;let isWhole=!this.isCoarse&&!this.content.smooth;return isWhole&&
+this.complete(),this.drawLines(shown),isWhole&&!this.isRefined}strip(program,shown){let{width,height}=this.canvas,samples=Number(
+this.viewer.settings.samples);if(this.rowsDone>=height&&(this.rowsDone=0),this.rowsDone===0&&(this.arrange(shown),this.isRefined))
+return!1;this.place(shown,width,height);let price=program.price*this.factor(samples),rows=Math.min(height-this.rowsDone,
+rowsIn(STRIP_MS,price,width,samples));return this.sum(program,shown,this.rowsDone,rows,samples),this.rowsDone+=rows,this.
+rowsDone<height?!1:(this.show(shown,this.content.smooth,samples),this.complete(),this.drawLines(shown),!0)}drawLines(shown){
+let{front,frontPen,graphics}=this,{camera,ratio}=this.viewer,{scene}=this.content,{width,height}=this.canvas;if(!scene||
+!camera||!frontPen)return;let{earth,bodies}=scene;if(!earth.lines.length&&!bodies.labels.length)return;let{state,aspect}=camera,
+look=JSON.stringify([state,aspect,width,height,earth.lines,earth.version]);if(look!==this.frontLook){let{anchor}=this.viewer.
+view(shown,ratio),{canvas}=graphics;canvas.width<width&&(canvas.width=width),canvas.height<height&&(canvas.height=height),
+front.width=width,front.height=height,earth.drawLines({camera,anchor,width,height,ratio},()=>{let top=canvas.height-height;
+frontPen.drawImage(canvas,0,top,width,height,0,0,width,height)}),bodies.drawLabels(frontPen,{camera,anchor,width,height,
+ratio}),this.frontLook=look}this.pen?.drawImage(front,0,0)}complete(){let{camera,player}=this.viewer;this.rowsDone=this.
+canvas.height,this.isCoarse=!1,this.draftVersion=this.version,replace(this.lastPen,this.canvas),camera&&!player.playing&&
+(this.lastCamera=new Camera(camera.state,camera.limits,camera.flat,camera.aspect))}reuse(){let{lastCamera}=this,{camera}=this.
+viewer,{scene}=this.content;if(!scene?.header.geometry.planar||!camera||!lastCamera||!camera.state.parallel||!lastCamera.
+state.parallel)return null;let{geometry}=scene.header,focus=subtract2(camera.state.focal_point,geometry.center),anchor=toFrame(
+geometry.frame,focus),[before,now]=[lastCamera,camera].map(view=>projection(geometry,view,anchor));return reused(before,
+now,this.canvas.width,this.canvas.height)}factor(samples){let{settings,player}=this.viewer;return settings.motion!=="off"||
+player.varies&&player.playing?motionFactor(samples):1}placeAt(shown,x,y){let{places}=this.content;return this.place(shown,
+places?.width||this.canvas.width,places?.height||this.canvas.height),places?.at(x,y)??null}place(shown,width,height){let{
+viewer,layers,content}=this,{camera}=viewer;if(!camera||!layers.length)return;let{anchor}=viewer.view(shown,this.density(
+height));content.places?.draw({layers,camera,anchor,width,height})}density(height){return this.viewer.ratio*height/this.
+canvas.height}sum(program,shown,top,rows,samples){let{places,scene}=this.content,{camera}=this.viewer;if(!places||!scene||
+!camera)return 0;let{width,height}=places,view=this.viewer.view(shown,this.density(height)),draft=this.isDraft(height,samples),
+valuesOf=layer=>(layer.bindNodes(view.anchor),layer.bindTextures(shown[0],shown[1]),{...this.values(layer,scene,camera,view,
+samples,draft),...rays(layer.header.geometry,camera,view.anchor,width,height)});program.warm||places.sum(program,top,1,valuesOf),
+program.warm=!0;let started=performance.now();places.sum(program,top,rows,valuesOf);let spent=performance.now()-started;
+return program.price=learnedPrice(program.price,spent,width*rows,samples,this.factor(samples)),spent}isDraft(height,samples){
+return samples!==this.viewer.settings.samples||height!==this.canvas.height}colour(places,shown,samples){let{scene}=this.
+content,{camera}=this.viewer;if(!scene||!camera)return;let{width,height}=places,view=this.viewer.view(shown,this.density(
+height)),draft=this.isDraft(height,samples),valuesOf=layer=>this.values(layer,scene,camera,view,samples,draft),{u_grain:grain}=valuesOf(
+scene),{header}=scene,blocks=isEven(header,this.viewer.settings)?evenBlocks(header.constants.even,Number(grain),width,height):
+null;places.colour(blocks,valuesOf)}show(shown,smooth,samples){let{places}=this.content;if(!places)return;this.colour(places,
+shown,samples);let{width,height}=places,{canvas}=this.graphics;canvas.width<width&&(canvas.width=width),canvas.height<height&&
+(canvas.height=height);let most=smooth?SMOOTH_ROWS:height;for(let bottom=0;bottom<height;bottom+=most)this.render(shown,
+bottom,Math.min(most,height-bottom),smooth)}render(shown,bottom,rows,smooth){let{graphics,viewer}=this,{camera}=viewer,{
+scene,places}=this.content;if(!camera||!scene||!places)return;let gl=graphics.context,{width,height}=places,view=viewer.
+view(shown,this.density(height));smooth?graphics.bindSmooth(width,rows):gl.bindFramebuffer(gl.FRAMEBUFFER,null),gl.viewport(
+0,-bottom,width,height),gl.enable(gl.SCISSOR_TEST),gl.scissor(0,0,width,rows),gl.enable(gl.DEPTH_TEST),gl.depthFunc(gl.LESS),
+gl.disable(gl.BLEND),gl.disable(gl.CULL_FACE);let[r,g,b]=scene.header.background??[1,1,1];gl.clearColor(r,g,b,viewer.isClear?
+0:1),gl.clear(gl.COLOR_BUFFER_BIT|gl.DEPTH_BUFFER_BIT);let around2={camera,anchor:view.anchor,width,height,ratio:viewer.
+ratio};scene.earth.drawGround(around2);let{bodies}=scene;bodies.draw(around2,"opaque"),bodies.seeThrough(()=>{if(!smooth)
+return places.show(scene.programs("surface"));let matrix=projection(scene.header.geometry,camera,view.anchor);places.triangles(
+scene.programs("smooth"),matrix,view.anchor,{u_bottom:bottom})}),this.drawArrows(shown,view,width,height),bodies.draw(around2,
+"clear"),scene.marks.draw({...around2,ratio:view.density},viewer.settings,shown),smooth&&graphics.copySmooth(width,rows),
+this.copy(width,height,bottom,rows)}drawArrows(shown,view,width,height){let{camera,settings}=this.viewer,{scene}=this.content;
+if(!scene||!camera||!hasArrows(scene.header,settings))return;let seen={...camera.sight(height/view.density),planes:camera.
+planes},draft=height!==this.canvas.height,layers=this.layers.map(layer=>layer.scene);for(let[layer,placed]of scene.arrows.
+share(seen,settings,layers)){let{arrows,header}=layer,program=arrows.program(settings,isNear(header,settings,view));if(!program||
+!placed.length)continue;layer.bindTextures(shown[0],shown[1]);let painted=layer.scalarParts(shown[0],shown[1]),values=this.
+values(layer,scene,camera,view,Number(settings.samples),draft);arrows.draw(program,placed,painted,view.anchor,{...values,
+u_picture:[width,height]})}}values({header},{bodies},camera,view,samples,draft){let{settings}=this.viewer,{columns,rows}=header.
+geometry,plain=header.scalars.name!==null&&hasArrows(header,settings)&&settings.arrow_color==="scalars";return{...uniforms(
+header,{...settings,samples},view),...draft?draftUniforms(settings,samples,view.density):{},u_matrix:projection(header.geometry,
+camera,view.anchor),u_mapped:header.scalars.name!==null&&!plain,u_plain:plain,u_flat:!!header.scalars.flat,u_padding:[columns.
+before,rows.before],u_colour:header.colour,u_lit:header.lighting,u_ground:header.background??[1,1,1],u_opacity:bodies.areBehind?
+1:header.opacity,u_toEye:toFrame(header.geometry.frame,scale2(camera.axes[2],-1))}}copy(width,height,bottom,rows){let{pen}=this;
+if(!pen)return;let{canvas}=this.graphics,first=canvas.height-rows,[w,scaled]=[this.canvas.width,this.canvas.height/height];
+if(pen.imageSmoothingEnabled=w!==width||scaled!==1,pen.imageSmoothingEnabled){let{coarse,coarsePen}=this;coarse.width=width,
+coarse.height=rows,coarsePen?.drawImage(canvas,0,first,width,rows,0,0,width,rows),[canvas,first]=[coarse,0]}let to=(height-
+bottom-rows)*scaled;pen.clearRect(0,to,w,rows*scaled),pen.drawImage(canvas,0,first,width,rows,0,to,w,rows*scaled)}},GREATEST_GROWTH=4,
+LEAST_GROWTH=.3,ROUNDING3=1e-6,product=(a,b)=>multiply([0,0,0,0,0,0],a,b),inverse=a=>invert([0,0,0,0,0,0],a);function reused(before,now,width,height){
+let[w,h]=[width/2,height/2],toPixels=m=>product([w,0,0,-h,w,h],[m[0],m[1],m[4],m[5],m[12],m[13]]),matrix=product(toPixels(
+now),inverse(toPixels(before))),area=Math.abs(determinant(matrix));if(!(area>LEAST_GROWTH**2&&area<GREATEST_GROWTH**2))return null;
+let[a,b,c,d,e,f]=inverse(matrix),isInside=([x,y])=>Math.abs((a*x+c*y+e)/w-1)<1+ROUNDING3&&Math.abs((b*x+d*y+f)/h-1)<1+ROUNDING3,
+covers=[[0,0],[width,0],[0,height],[width,height]].every(isInside),[xx,xy,yx,yy]=matrix,shifts=Math.abs(xx-1)+Math.abs(yy-
+1)+Math.abs(xy)+Math.abs(yx)<ROUNDING3;if(shifts)for(let n of[4,5])matrix[n]=Math.round(matrix[n]);return{matrix,covers,
+shifts}}var CORNERS=4,ArrowSeeds=class{surface;limits;sums;whole=[[]];last=null;constructor(surface,limits){this.surface=surface,
 this.limits=limits;let sum=0;this.sums=Float64Array.from({length:surface.corners.length/CORNERS},(_,cell)=>sum+=this.area(
 wholeCell(cell)))}seen(view,spacing){return(!this.last||!this.covers(this.last.wanted,[view,spacing]))&&(this.last={wanted:[
 view,spacing],seeds:this.make([view,spacing])}),this.last.seeds}position(cell,place){let{nodes,corners}=this.surface;return between2(
@@ -1255,105 +1289,107 @@ before,after,between3]){return between3<.5?before:after}var USERS={position:["no
 this.tile=tile,this.graphics=graphics,this.header=header,this.parts=parts,this.earth=new EarthLayer(graphics,header,parts),
 this.bodies=new Bodies(graphics,header,parts),this.arrows=new Arrows(graphics,header,parts),this.marks=new Marks(graphics,
 header,parts)}isReady(settings,smooth=!1){let programs=[!1,!0].map(isClose=>this.arrows.program(settings,isClose));return[
-...["place","surface","smooth","probe"].filter(name=>smooth||name!=="smooth").map(name=>this.programs(name).ready),this.
-earth.isReady,this.bodies.isReady,this.marks.isReady(settings)].every(Boolean)&&programs.every(program=>program?.ready??
-!0)}missing(before,after){let{geometry,slices,scalars,image,pyramid,formula}=this.header,{trace}=slices,names=["mesh",...trace?.
-parts??["position",...geometry.planar?[]:["normal"]]];pyramid&&!formula&&names.push("places"),this.header.bodies?.runs.length&&
-names.push(...BODY_PARTS),geometry.triangles&&names.push("triangles","blocks");for(let step of new Set([before,after]))trace?
-names.push(...flowsOf(this.header,step).map(n=>`flow/${n}`)):names.push(`slices/${step}`),slices.channels===2&&names.push(
-`extra/${step}`);return names.push(...this.scalarParts(before,after)),scalars.name!==null&&names.push("cmap"),image&&names.
-push("image","step"),[...new Set(names)].filter(name=>!this.fits(name))}lacking(step){let steps=this.missing(step,step).
-map(name=>name.startsWith("flow/")?stepOf(name):step);return[...new Set(steps)]}scalarParts(before,after,of=this.header.
-scalars){let{name,steps,number}=of;if(name===null)return[];let end=number?`/${number}`:"";return(steps>1?[before,after]:
-[0,0]).map(step=>`scalars/${step}${end}`)}fits(name){let part=this.parts.get(name);if(!part)return!1;let{geometry,slices,
-image,mesh}=this.header,blocks=geometry.shape.map(n=>Math.max(Math.ceil((n-1)/mesh.tileCells),1)),nodes=slices.trace?.nodes??
-[],shape2={flow:[...nodes,part.shape[2]],unit:nodes,padded:[...nodes.map(n=>n+2),3],slices:[slices.count,geometry.rows.size,
-geometry.columns.size,slices.channels],position:[...geometry.shape,3],mesh:geometry.triangles?part.shape:[...blocks,part.
-shape[2]],step:image?[...image.stepSize].reverse():[]}[name.split("/")[0]];return!shape2||String(shape2)===String(part.shape)}make(steps,until){
-let{slices,geometry}=this.header,{trace}=slices;if(!trace)return!0;let padded=this.part("padded"),digest=name=>this.key(
-["padded"],name,trace);return this.put("position",digest("position"),()=>positionOf(padded,trace,geometry.shape)),!geometry.
-planar&&!trace.parts.includes("normal")&&this.put("normal",digest("normal"),()=>normalOf2(padded,trace,geometry.shape)),
-this.wanted=steps,steps.every(step=>this.trace(step,until))}prepare(){let{trace}=this.header.slices;trace&&programsOf(this.
-graphics,this.header,trace)}trace(step,until){let{graphics,header}=this,{trace,lags,sides}=header.slices,name=`slices/${step}`;
-if(!trace||this.resources.has(name))return!0;let flows=flowsOf(header,step).map(n=>`flow/${n}`),key=this.key([...flows,...SOURCES],
-step,trace,lags,sides,header.geometry.levels),texture=null;if(!key||!graphics.common.has(`slices ${key}`)){let{tracings}=graphics,
-tracked=key||`${this.number} ${step}`;this.tracing!==tracked&&this.stopTracing();let find=part=>this.parts.get(part),tracing=tracings.
-get(tracked)??new Tracing(graphics,header,trace,find,step);if(tracings.set(this.tracing=tracked,tracing),texture=tracing.
-advance(until),!texture)return!1;this.stopTracing()}return this.take(name,"Texture",key,()=>texture,()=>{}),!0}put(name,digest,make){
-let{graphics,parts}=this;if(parts.get(name)?.digest===digest)return;let part=graphics.stock.get(digest)?.part??{...make(),
-digest};graphics.release(parts.get(name)),parts.set(name,graphics.hold(part)),this.forget(name)}isMade(steps){return!this.
-missing(steps[0],steps[steps.length-1]).length&&(!this.header.slices.trace||this.isLoaded(steps))}stopTracing(){this.graphics.
-tracings.get(this.tracing)?.dispose(),this.graphics.tracings.delete(this.tracing),this.tracing=""}part(name){let part=this.
-parts.get(name);if(!part)throw new Error(`the part "${name}" of the scene is missing`);return part}forget(name){let[kind,
-step]=name.split("/");["position","cells","triangles"].includes(kind)&&this.arrows.forget();let sliced=["slices","extra",
-"flow"].includes(kind);!sliced&&kind!=="scalars"&&(this.earth.forget(name),this.version+=1,this.most=null),BODY_PARTS.includes(
-kind)&&this.bodies.dispose();for(let user of sliced?[`slices/${step}`]:USERS[kind]??[])this.drop(user);SOURCES.includes(
-kind)&&(this.wanted=[],this.dropSlices(NaN,NaN))}drop(name){let resource=this.resources.get(name);this.resources.delete(
-name),resource&&(resource.users-=1,!resource.users&&(this.graphics.free(resource.kind,resource.object),this.graphics.common.
-delete(resource.key)))}dispose(){for(let name of[...this.resources.keys()])this.drop(name);this.stopTracing(),this.earth.
-dispose(),this.bodies.dispose(),this.arrows.dispose(),this.marks.dispose()}key(names,...rest){let digests=names.map(name=>this.
-parts.has(name)?this.part(name).digest:"none");return digests.every(Boolean)?JSON.stringify([digests,rest]):""}take(name,kind,key,make,fill){
-let own=this.resources.get(name);if(own)return own.object;let{graphics}=this,whole=key&&`${name.split("/")[0]} ${key}`,shared2=whole?
-graphics.common.get(whole):void 0,object=shared2?.object??graphics.counted(make()),resource=shared2??{kind,object,count:0,
-key:whole,users:0};return resource.users+=1,this.resources.set(name,resource),shared2||(resource.count=fill(object)||0),
-whole&&graphics.common.set(whole,resource),object}get blocks(){return this.part("mesh")}get doublings(){let{geometry,mesh}=this.
-header;return this.most??=mostDoublings(geometry,this.blocks,this.part("position").data,mesh.tileCells)}cornersAt(place){
-let{triangles,shape:shape2}=this.header.geometry;return triangles?cornersOf(this.part("triangles").data,place):cornersAt(
-shape2,place)}isLoaded(steps){return steps.every(step=>this.resources.has(`slices/${step}`))}get tracedBytes(){let{slices,
-geometry}=this.header;return slices.trace?[...this.resources.keys()].filter(name=>name.startsWith("slices/")).length*TEXEL_BYTES*
-slices.count*geometry.rows.size*geometry.columns.size:0}load(steps){for(let step of steps)this.slices(step)}bindNodes(anchor){
-let gl=this.graphics.context,{shape:shape2,triangles,planar}=this.header.geometry;anchor.some((x,k)=>x!==this.anchor[k])&&
-this.drop("nodes"),this.anchor=anchor;let[height,width]=this.nodesSize,nodes=this.texture("nodes",this.key(["position","\
-normal"],width,anchor),texture=>{checkSize(gl,width,height),gl.bindTexture(gl.TEXTURE_2D_ARRAY,texture);let data=new Float32Array(
-(planar?3:6)*width*height);data.set(positions(this.part("position").data,anchor)),planar||data.set(unitNormals(this.part(
-"normal").data),3*width*height);let size=[width,height,planar?1:2];gl.texImage3D(gl.TEXTURE_2D_ARRAY,0,gl.RGB32F,...size,
-0,gl.RGB,gl.FLOAT,data),nearest2(gl,gl.TEXTURE_2D_ARRAY)}),open=()=>this.parts.get("cells")?.data??Uint8Array.of(1),cells=triangles?
-this.table("cells",this.key(["triangles","blocks"]),gl.RGBA32UI,CORNERS_WIDTH,()=>cornersAndBlocks(this.part("triangles").
-data,this.part("blocks").data)):this.table("cells",this.key(["cells"],shape2),gl.R8UI,this.parts.has("cells")?shape2[1]-
-1:1,open);this.bind("u_nodes",nodes),this.bind(triangles?"u_corners":"u_open",cells)}get nodesSize(){let{shape:shape2,triangles,
-rows,columns}=this.header.geometry;return triangles?[rows.size,columns.size]:shape2}bind(sampler,texture){let gl=this.graphics.
-context;gl.activeTexture(gl.TEXTURE0+SAMPLERS.indexOf(sampler)),gl.bindTexture(ARRAYS.includes(sampler)?gl.TEXTURE_2D_ARRAY:
-gl.TEXTURE_2D,texture),gl.activeTexture(gl.TEXTURE0+SAMPLERS.length)}table(name,key,inner,width,values){let gl=this.graphics.
-context,formats={[gl.RGBA32UI]:[gl.RGBA_INTEGER,gl.UNSIGNED_INT,4],[gl.R8UI]:[gl.RED_INTEGER,gl.UNSIGNED_BYTE,1],[gl.RG32F]:[
-gl.RG,gl.FLOAT,2],[gl.RGBA32F]:[gl.RGBA,gl.FLOAT,4]},[format,type,channels]=formats[inner];return this.texture(name,key,
-texture=>{let data=values(),height=Math.ceil(data.length/channels/width);gl.bindTexture(gl.TEXTURE_2D,texture),gl.pixelStorei(
-gl.UNPACK_ALIGNMENT,1);let all=filled(data,channels*width*height);gl.texImage2D(gl.TEXTURE_2D,0,inner,width,height,0,format,
-type,all),nearest2(gl,gl.TEXTURE_2D)})}shares(before,after){let{geometry,scalars}=this.header,{shape:shape2}=geometry,painted=this.
-scalarParts(before,after);return[this.key(["triangles",...new Set(painted)],shape2,scalars.low,scalars.high,scalars.log),
-()=>shares(painted.map(name=>this.part(name).data),scalars)]}texture(name,key,fill){let gl=this.graphics.context;return this.
-take(name,"Texture",key,()=>gl.createTexture(),fill)}slices(step){let{slices,geometry}=this.header,key=this.key([`slices\
-/${step}`,`extra/${step}`],geometry.levels,slices.extra);return this.texture(`slices/${step}`,key,texture=>{let part=this.
-part(`slices/${step}`),[layers,height,width,channels]=part.shape,data=part.data,extra=this.parts.get(`extra/${step}`)?.data,
-texels=height*width,layer=n=>{let own=data.subarray(n*texels*channels,(n+1)*texels*channels);if(channels===4)return own;
-let all=new Uint16Array(4*texels),place=slices.extra.indexOf(n),fourth=place<0?null:extra?.subarray(place*texels,(place+
-1)*texels);for(let k=0;k<texels;k+=1)all[4*k]=own[2*k],all[4*k+1]=own[2*k+1],fourth&&(all[4*k+3]=fourth[k]);return all};
-this.fill(texture,{width,height,layers,channels:4,levels:geometry.levels},layer)})}programs(name){let{programs}=this.graphics,
-{vertex,place,fullVertex,surface,probe}=this.header.shaders;return name==="smooth"?programs.get(vertex,surface,"FLOWTEX_\
-SMOOTH"):name==="place"?programs.get(vertex,place):programs.get(fullVertex,name==="probe"?probe:surface)}texels(step,texels){
-let{graphics,header}=this,gl=graphics.context,{slices,geometry}=header,width=geometry.columns.size,texture=this.slices(step),
-draw=()=>{gl.activeTexture(gl.TEXTURE0),gl.bindTexture(gl.TEXTURE_2D_ARRAY,texture),gl.bindVertexArray(null);let places=texels.
-flatMap(n=>[n%width,Math.floor(n/width)]);graphics.programs.use(this.programs("probe"),{u_texels:places}),gl.drawArrays(
-gl.TRIANGLES,0,3)},bits=graphics.numbers(draw,texels.length,slices.count),numbers=new Float32Array(bits.buffer);return(layer,n)=>{
-let[x,y,z,w]=numbers.subarray(4*(layer*texels.length+n));return[x,y,z,w]}}image(name,repeat){let gl=this.graphics.context;
-return this.texture(name,this.key([name],repeat),texture=>{let{data,shape:shape2}=this.part(name),[height,width,channels=1]=shape2,
-levels=Math.floor(Math.log2(Math.max(width,height))),size={width,height,layers:1,channels,levels};this.fill(texture,size,
-()=>data);let wrap=n=>repeat[n]?gl.REPEAT:gl.CLAMP_TO_EDGE;gl.texParameteri(gl.TEXTURE_2D_ARRAY,gl.TEXTURE_WRAP_S,wrap(1)),
-gl.texParameteri(gl.TEXTURE_2D_ARRAY,gl.TEXTURE_WRAP_T,wrap(0))})}fill(texture,size,layer){let gl=this.graphics.context,
-{width,height,layers,channels,levels}=size;makeLayers(gl,texture,size),gl.pixelStorei(gl.UNPACK_ALIGNMENT,1);let format=channels===
-1?gl.RED:gl.RGBA;for(let n=0;n<layers;n+=1)gl.texSubImage3D(gl.TEXTURE_2D_ARRAY,0,0,0,n,width,height,1,format,gl.HALF_FLOAT,
-layer(n));levels&&gl.generateMipmap(gl.TEXTURE_2D_ARRAY)}dropSlices(before,after){let next=after+1<this.header.slices.steps?
-after+1:0,kept=[before,after,next,after+1,...this.wanted];for(let name of[...this.resources.keys()])name.startsWith("sli\
-ces/")&&!kept.includes(stepOf(name))&&this.drop(name)}bindTextures(before,after){let gl=this.graphics.context,{image,scalars}=this.
-header,steps=String(this.scalarParts(before,after));steps!==this.scalarSteps&&this.drop("scalar"),this.scalarSteps=steps,
-this.dropSlices(before,after),this.bind("u_slices",this.slices(before)),this.bind("u_slicesNext",after===before?null:this.
-slices(after)),this.bind("u_image",image&&this.image("image",[!0,!0])),this.bind("u_stepImage",image&&this.image("step",
-image.repeat));let colours=texelsOf(this.parts.get("cmap")?.data??new Uint8Array(4),scalars);this.bind("u_cmap",this.table(
-"cmap",this.key(["cmap"],scalars.beyond),gl.RGBA32F,colours.length/4,()=>colours));let[key,values]=this.shares(before,after);
-this.bind("u_shares",scalars.name===null?null:this.table("scalar",key,gl.RG32F,this.nodesSize[1],values));let along2=()=>alongAxes(
-image?.alongI??[],image?.alongJ??[]);this.bind("u_along",image&&this.table("along","",gl.RG32F,Math.max(image.alongI.length,
-image.alongJ.length),along2))}};function nearest2(gl,target){gl.texParameteri(target,gl.TEXTURE_MIN_FILTER,gl.NEAREST),gl.
-texParameteri(target,gl.TEXTURE_MAG_FILTER,gl.NEAREST)}function filled(data,length3){if(data.length===length3)return data;
-let all=new data.constructor(length3);return all.set(data),all}var REQUEST_MS=60,LOAD_MS=25,BUDGET_BYTES=9e8,BYTES_HELD=3.5,STEPS_HELD2={slices:4,flow:24},Tiles=class{layers=[];missing=[];wanted=0;pending=0;host;root;tiles=new Map;pyramid=null;chosen={
+...["place","blocks","blur","colour","surface","smooth","probe"].filter(name=>smooth||name!=="smooth").map(name=>this.programs(
+name).ready),this.earth.isReady,this.bodies.isReady,this.marks.isReady(settings)].every(Boolean)&&programs.every(program=>program?.
+ready??!0)}missing(before,after){let{geometry,slices,scalars,image,pyramid,formula}=this.header,{trace}=slices,names=["m\
+esh",...trace?.parts??["position",...geometry.planar?[]:["normal"]]];pyramid&&!formula&&names.push("places"),this.header.
+bodies?.runs.length&&names.push(...BODY_PARTS),geometry.triangles&&names.push("triangles","blocks");for(let step of new Set(
+[before,after]))trace?names.push(...flowsOf(this.header,step).map(n=>`flow/${n}`)):names.push(`slices/${step}`),slices.channels===
+2&&names.push(`extra/${step}`);return names.push(...this.scalarParts(before,after)),scalars.name!==null&&names.push("cma\
+p"),image&&names.push("image","step"),[...new Set(names)].filter(name=>!this.fits(name))}lacking(step){let steps=this.missing(
+step,step).map(name=>name.startsWith("flow/")?stepOf(name):step);return[...new Set(steps)]}scalarParts(before,after,of=this.
+header.scalars){let{name,steps,number}=of;if(name===null)return[];let end=number?`/${number}`:"";return(steps>1?[before,
+after]:[0,0]).map(step=>`scalars/${step}${end}`)}fits(name){let part=this.parts.get(name);if(!part)return!1;let{geometry,
+slices,image,mesh}=this.header,blocks=geometry.shape.map(n=>Math.max(Math.ceil((n-1)/mesh.tileCells),1)),nodes=slices.trace?.
+nodes??[],shape2={flow:[...nodes,part.shape[2]],unit:nodes,padded:[...nodes.map(n=>n+2),3],slices:[slices.count,geometry.
+rows.size,geometry.columns.size,slices.channels],position:[...geometry.shape,3],mesh:geometry.triangles?part.shape:[...blocks,
+part.shape[2]],step:image?[...image.stepSize].reverse():[]}[name.split("/")[0]];return!shape2||String(shape2)===String(part.
+shape)}make(steps,until){let{slices,geometry}=this.header,{trace}=slices;if(!trace)return!0;let padded=this.part("padded"),
+digest=name=>this.key(["padded"],name,trace);return this.put("position",digest("position"),()=>positionOf(padded,trace,geometry.
+shape)),!geometry.planar&&!trace.parts.includes("normal")&&this.put("normal",digest("normal"),()=>normalOf2(padded,trace,
+geometry.shape)),this.wanted=steps,steps.every(step=>this.trace(step,until))}prepare(){let{trace}=this.header.slices;trace&&
+programsOf(this.graphics,this.header,trace)}trace(step,until){let{graphics,header}=this,{trace,lags,sides}=header.slices,
+name=`slices/${step}`;if(!trace||this.resources.has(name))return!0;let flows=flowsOf(header,step).map(n=>`flow/${n}`),key=this.
+key([...flows,...SOURCES],step,trace,lags,sides,header.geometry.levels),texture=null;if(!key||!graphics.common.has(`slic\
+es ${key}`)){let{tracings}=graphics,tracked=key||`${this.number} ${step}`;this.tracing!==tracked&&this.stopTracing();let find=part=>this.
+parts.get(part),tracing=tracings.get(tracked)??new Tracing(graphics,header,trace,find,step);if(tracings.set(this.tracing=
+tracked,tracing),texture=tracing.advance(until),!texture)return!1;this.stopTracing()}return this.take(name,"Texture",key,
+()=>texture,()=>{}),!0}put(name,digest,make){let{graphics,parts}=this;if(parts.get(name)?.digest===digest)return;let part=graphics.
+stock.get(digest)?.part??{...make(),digest};graphics.release(parts.get(name)),parts.set(name,graphics.hold(part)),this.forget(
+name)}isMade(steps){return!this.missing(steps[0],steps[steps.length-1]).length&&(!this.header.slices.trace||this.isLoaded(
+steps))}stopTracing(){this.graphics.tracings.get(this.tracing)?.dispose(),this.graphics.tracings.delete(this.tracing),this.
+tracing=""}part(name){let part=this.parts.get(name);if(!part)throw new Error(`the part "${name}" of the scene is missing`);
+return part}forget(name){let[kind,step]=name.split("/");["position","cells","triangles"].includes(kind)&&this.arrows.forget();
+let sliced=["slices","extra","flow"].includes(kind);!sliced&&kind!=="scalars"&&(this.earth.forget(name),this.version+=1,
+this.most=null),BODY_PARTS.includes(kind)&&this.bodies.dispose();for(let user of sliced?[`slices/${step}`]:USERS[kind]??
+[])this.drop(user);SOURCES.includes(kind)&&(this.wanted=[],this.dropSlices(NaN,NaN))}drop(name){let resource=this.resources.
+get(name);this.resources.delete(name),resource&&(resource.users-=1,!resource.users&&(this.graphics.free(resource.kind,resource.
+object),this.graphics.common.delete(resource.key)))}dispose(){for(let name of[...this.resources.keys()])this.drop(name);
+this.stopTracing(),this.earth.dispose(),this.bodies.dispose(),this.arrows.dispose(),this.marks.dispose()}key(names,...rest){
+let digests=names.map(name=>this.parts.has(name)?this.part(name).digest:"none");return digests.every(Boolean)?JSON.stringify(
+[digests,rest]):""}take(name,kind,key,make,fill){let own=this.resources.get(name);if(own)return own.object;let{graphics}=this,
+whole=key&&`${name.split("/")[0]} ${key}`,shared2=whole?graphics.common.get(whole):void 0,object=shared2?.object??graphics.
+counted(make()),resource=shared2??{kind,object,count:0,key:whole,users:0};return resource.users+=1,this.resources.set(name,
+resource),shared2||(resource.count=fill(object)||0),whole&&graphics.common.set(whole,resource),object}get blocks(){return this.
+part("mesh")}get doublings(){let{geometry,mesh}=this.header;return this.most??=mostDoublings(geometry,this.blocks,this.part(
+"position").data,mesh.tileCells)}cornersAt(place){let{triangles,shape:shape2}=this.header.geometry;return triangles?cornersOf(
+this.part("triangles").data,place):cornersAt(shape2,place)}isLoaded(steps){return steps.every(step=>this.resources.has(`\
+slices/${step}`))}get tracedBytes(){let{slices,geometry}=this.header;return slices.trace?[...this.resources.keys()].filter(
+name=>name.startsWith("slices/")).length*TEXEL_BYTES*slices.count*geometry.rows.size*geometry.columns.size:0}load(steps){
+for(let step of steps)this.slices(step)}bindNodes(anchor){let gl=this.graphics.context,{shape:shape2,triangles,planar}=this.
+header.geometry;anchor.some((x,k)=>x!==this.anchor[k])&&this.drop("nodes"),this.anchor=anchor;let[height,width]=this.nodesSize,
+nodes=this.texture("nodes",this.key(["position","normal"],width,anchor),texture=>{checkSize(gl,width,height),gl.bindTexture(
+gl.TEXTURE_2D_ARRAY,texture);let data=new Float32Array((planar?3:6)*width*height);data.set(positions(this.part("position").
+data,anchor)),planar||data.set(unitNormals(this.part("normal").data),3*width*height);let size=[width,height,planar?1:2];
+gl.texImage3D(gl.TEXTURE_2D_ARRAY,0,gl.RGB32F,...size,0,gl.RGB,gl.FLOAT,data),nearest2(gl,gl.TEXTURE_2D_ARRAY)}),open=()=>this.
+parts.get("cells")?.data??Uint8Array.of(1),cells=triangles?this.table("cells",this.key(["triangles","blocks"]),gl.RGBA32UI,
+CORNERS_WIDTH,()=>cornersAndBlocks(this.part("triangles").data,this.part("blocks").data)):this.table("cells",this.key(["\
+cells"],shape2),gl.R8UI,this.parts.has("cells")?shape2[1]-1:1,open);this.bind("u_nodes",nodes),this.bind(triangles?"u_co\
+rners":"u_open",cells)}get nodesSize(){let{shape:shape2,triangles,rows,columns}=this.header.geometry;return triangles?[rows.
+size,columns.size]:shape2}bind(sampler,texture){let gl=this.graphics.context;gl.activeTexture(gl.TEXTURE0+SAMPLERS.indexOf(
+sampler)),gl.bindTexture(ARRAYS.includes(sampler)?gl.TEXTURE_2D_ARRAY:gl.TEXTURE_2D,texture),gl.activeTexture(gl.TEXTURE0+
+SAMPLERS.length)}table(name,key,inner,width,values){let gl=this.graphics.context,formats={[gl.RGBA32UI]:[gl.RGBA_INTEGER,
+gl.UNSIGNED_INT,4],[gl.R8UI]:[gl.RED_INTEGER,gl.UNSIGNED_BYTE,1],[gl.RG32F]:[gl.RG,gl.FLOAT,2],[gl.RGBA32F]:[gl.RGBA,gl.
+FLOAT,4]},[format,type,channels]=formats[inner];return this.texture(name,key,texture=>{let data=values(),height=Math.ceil(
+data.length/channels/width);gl.bindTexture(gl.TEXTURE_2D,texture),gl.pixelStorei(gl.UNPACK_ALIGNMENT,1);let all=filled(data,
+channels*width*height);gl.texImage2D(gl.TEXTURE_2D,0,inner,width,height,0,format,type,all),nearest2(gl,gl.TEXTURE_2D)})}shares(before,after){
+let{geometry,scalars}=this.header,{shape:shape2}=geometry,painted=this.scalarParts(before,after);return[this.key(["trian\
+gles",...new Set(painted)],shape2,scalars.low,scalars.high,scalars.log),()=>shares(painted.map(name=>this.part(name).data),
+scalars)]}texture(name,key,fill){let gl=this.graphics.context;return this.take(name,"Texture",key,()=>gl.createTexture(),
+fill)}slices(step){let{slices,geometry}=this.header,key=this.key([`slices/${step}`,`extra/${step}`],geometry.levels,slices.
+extra);return this.texture(`slices/${step}`,key,texture=>{let part=this.part(`slices/${step}`),[layers,height,width,channels]=part.
+shape,data=part.data,extra=this.parts.get(`extra/${step}`)?.data,texels=height*width,layer=n=>{let own=data.subarray(n*texels*
+channels,(n+1)*texels*channels);if(channels===4)return own;let all=new Uint16Array(4*texels),place=slices.extra.indexOf(
+n),fourth=place<0?null:extra?.subarray(place*texels,(place+1)*texels);for(let k=0;k<texels;k+=1)all[4*k]=own[2*k],all[4*
+k+1]=own[2*k+1],fourth&&(all[4*k+3]=fourth[k]);return all};this.fill(texture,{width,height,layers,channels:4,levels:geometry.
+levels},layer)})}programs(name){let{programs}=this.graphics,{vertex,place,fullVertex,even,surface,...others}=this.header.
+shaders;return name==="place"?programs.get(vertex,place):name==="smooth"?programs.get(vertex,surface,"FLOWTEX_SMOOTH"):name===
+"surface"?programs.get(fullVertex,surface):name==="blocks"?programs.get(fullVertex,even,"FLOWTEX_EVEN_BLOCKS"):name==="b\
+lur"?programs.get(fullVertex,even,"FLOWTEX_EVEN_BLUR"):programs.get(fullVertex,others[name])}texels(step,texels){let{graphics,
+header}=this,gl=graphics.context,{slices,geometry}=header,width=geometry.columns.size,texture=this.slices(step),draw=()=>{
+gl.activeTexture(gl.TEXTURE0),gl.bindTexture(gl.TEXTURE_2D_ARRAY,texture),gl.bindVertexArray(null);let places=texels.flatMap(
+n=>[n%width,Math.floor(n/width)]);graphics.programs.use(this.programs("probe"),{u_texels:places}),gl.drawArrays(gl.TRIANGLES,
+0,3)},bits=graphics.numbers(draw,texels.length,slices.count),numbers=new Float32Array(bits.buffer);return(layer,n)=>{let[
+x,y,z,w]=numbers.subarray(4*(layer*texels.length+n));return[x,y,z,w]}}image(name,repeat){let gl=this.graphics.context;return this.
+texture(name,this.key([name],repeat),texture=>{let{data,shape:shape2}=this.part(name),[height,width,channels=1]=shape2,levels=Math.
+floor(Math.log2(Math.max(width,height))),size={width,height,layers:1,channels,levels};this.fill(texture,size,()=>data);let wrap=n=>repeat[n]?
+gl.REPEAT:gl.CLAMP_TO_EDGE;gl.texParameteri(gl.TEXTURE_2D_ARRAY,gl.TEXTURE_WRAP_S,wrap(1)),gl.texParameteri(gl.TEXTURE_2D_ARRAY,
+gl.TEXTURE_WRAP_T,wrap(0))})}fill(texture,size,layer){let gl=this.graphics.context,{width,height,layers,channels,levels}=size;
+makeLayers(gl,texture,size),gl.pixelStorei(gl.UNPACK_ALIGNMENT,1);let format=channels===1?gl.RED:gl.RGBA;for(let n=0;n<layers;n+=
+1)gl.texSubImage3D(gl.TEXTURE_2D_ARRAY,0,0,0,n,width,height,1,format,gl.HALF_FLOAT,layer(n));levels&&gl.generateMipmap(gl.
+TEXTURE_2D_ARRAY)}dropSlices(before,after){let next=after+1<this.header.slices.steps?after+1:0,kept=[before,after,next,after+
+1,...this.wanted];for(let name of[...this.resources.keys()])name.startsWith("slices/")&&!kept.includes(stepOf(name))&&this.
+drop(name)}bindTextures(before,after){let gl=this.graphics.context,{image,scalars}=this.header,steps=String(this.scalarParts(
+before,after));steps!==this.scalarSteps&&this.drop("scalar"),this.scalarSteps=steps,this.dropSlices(before,after),this.bind(
+"u_slices",this.slices(before)),this.bind("u_slicesNext",after===before?null:this.slices(after)),this.bind("u_image",image&&
+this.image("image",[!0,!0])),this.bind("u_stepImage",image&&this.image("step",image.repeat));let colours=texelsOf(this.parts.
+get("cmap")?.data??new Uint8Array(4),scalars);this.bind("u_cmap",this.table("cmap",this.key(["cmap"],scalars.beyond),gl.
+RGBA32F,colours.length/4,()=>colours));let[key,values]=this.shares(before,after);this.bind("u_shares",scalars.name===null?
+null:this.table("scalar",key,gl.RG32F,this.nodesSize[1],values));let along2=()=>alongAxes(image?.alongI??[],image?.alongJ??
+[]);this.bind("u_along",image&&this.table("along","",gl.RG32F,Math.max(image.alongI.length,image.alongJ.length),along2))}};
+function nearest2(gl,target){gl.texParameteri(target,gl.TEXTURE_MIN_FILTER,gl.NEAREST),gl.texParameteri(target,gl.TEXTURE_MAG_FILTER,
+gl.NEAREST)}function filled(data,length3){if(data.length===length3)return data;let all=new data.constructor(length3);return all.
+set(data),all}var REQUEST_MS=60,LOAD_MS=25,BUDGET_BYTES=9e8,BYTES_HELD=3.5,STEPS_HELD2={slices:4,flow:24},Tiles=class{layers=[];missing=[];wanted=0;pending=0;host;root;tiles=new Map;pyramid=null;chosen={
 choices:new Map,steps:[],names:""};count=0;isWaiting=!1;hasAsked=!1;isOver=!1;failed=new Failures;constructor(host,root){
 this.host=host,this.root=root}has(name,part){return this.tiles.get(name)?.parts.has(part)??!1}fail(name,steps){this.failed.
 add(this.need(name,steps)),this.host.refine()}need(name,steps){return`${name} ${steps} ${this.root.header.scalars.name}`}dispose(){

@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 
 from flowtex._util.array_types import AnyArray, Bools, Bytes, Floats, Indices
 from flowtex.rendering.camera import Camera
+from flowtex.rendering.cpu.even import local_mean
 from flowtex.rendering.cpu.fragments import Fragments, level_colour, slice_level
 from flowtex.rendering.cpu.mipmaps import Mips
 from flowtex.rendering.cpu.noise import ImageLookup, ImageMips, SpaceNoise
@@ -80,16 +81,24 @@ def render(
     slices = slices_at(textures, steps, values)
     make = lookup or lookup_maker(textures)
     value, noise_level = [np.zeros((0,))], [np.zeros(0)]
+    share = [np.zeros(0)]
     for selection, part in fragments.parts(PART):
         part_lookup = make(part, values)
         summing = Summing(slices, values, part_lookup, by_lag=textures.image is not None)
-        value.append(summing.texture(part.place, level[selection], part.by))
+        texture, factor = summing.shares(part.place, level[selection], part.by)
+        value.append(texture)
+        share.append(factor)
         noise_level.append(part_lookup.level)
     image = partial(_image, pixel=coverage.pixel, size=size)
+    texture = image(np.concatenate(value[1:] or value))
+    if values["u_even"]:
+        texture -= local_mean(texture, values["u_grain"])
+    if textures.image is None:
+        texture *= image(np.concatenate(share))
     geometry = textures.geometry
     points = (geometry.field.surface.points - geometry.center).reshape(-1, 3)
     return Picture(
-        value=image(np.concatenate(value[1:] or value)),
+        value=texture,
         covered=np.isfinite(image(level)),
         coordinate=image(fragments.coordinate.value),
         nearest=np.nan_to_num(image(coverage.nearest)).astype(np.intp),

@@ -12,6 +12,7 @@ from flowtex._util.array_types import Floats
 from flowtex.rendering.cpu.cell import CellPath, unit
 from flowtex.rendering.cpu.fragments import Fragments
 from flowtex.rendering.cpu.path import AxisSlices, Path, Places, Slices, TrianglePlaces, moved
+from flowtex.rendering.even import even_gain
 from flowtex.rendering.shaders import const
 from flowtex.rendering.uniforms import Values
 
@@ -99,6 +100,16 @@ class Summing:
 
     def texture(self, coordinate: Places, level: Floats, by: Floats) -> Floats:
         """Texture at places and mip levels (N,); ``by`` is their change by a vector, (N, 2, 3)."""
+        value, share = self.shares(coordinate, level, by)
+        if value.ndim > 1:  # an image keeps its colours
+            return value
+        return np.asarray(value * share)
+
+    def shares(self, coordinate: Places, level: Floats, by: Floats) -> tuple[Floats, Floats]:
+        """Texture before it fades, and the factor by which it does, (N,) each.
+
+        Where the local mean will be subtracted, the factor has the contrast that this takes.
+        """
         values, lookup = self._values, self._lookup
         base = self._slices.layer(coordinate, 0, level)
         speed = np.linalg.norm(base[:, :3], axis=-1)
@@ -119,10 +130,11 @@ class Summing:
         sums = Sums(middle[:, None] * lookup.lookup(none, none[:, 0]), middle**2, none[:, 0].copy())
         for side in self.sides(coordinate, level, base):
             self._add(sums, side, cell, count)
-        value = lookup.blend(sums)
-        if value.ndim > 1:  # an image keeps its colours
-            return value
-        return np.asarray(value * self.faded(coordinate, level, certainty))
+        share = self.faded(coordinate, level, certainty)
+        if values["u_even"]:
+            near = sums.neighbours / sums.squares
+            share = share * even_gain(near, lookup.stretch(base[:, :3]), values)
+        return lookup.blend(sums), share
 
     def _parted(
         self, coordinate: Places, level: Floats, by: Floats, half: Floats, cell: CellPath | None

@@ -27,6 +27,7 @@ from flowtex.rendering.uniforms import (
     ANCHOR_RANGE,
     ViewState,
     has_arrows,
+    is_even,
     is_moving,
     is_near,
     is_sparse,
@@ -202,6 +203,13 @@ class FlowLayer:
         return found | {"FLOWTEX_DEFERRED"} | ({"FLOWTEX_OWN"} if self._has_own_colours else set())
 
     @property
+    def even_grain(self) -> float | None:
+        """The grain in pixels of a texture whose local mean is subtracted, or ``None``."""
+        if not is_even(self.textures, self._settings):
+            return None
+        return float(self._settings.grain * self.view.density)
+
+    @property
     def _has_own_colours(self) -> bool:
         """Whether VTK's colours are needed: those of vertices, or with edges."""
         prop, colours = self.actor.prop, self._colours
@@ -244,6 +252,7 @@ class FlowLayer:
         _last[window] = weakref.ref(self)
         values = uniforms(self.textures, self._settings, self.view)
         above, before = self.textures.geometry.padding
+        values["u_even"] &= self.deferred
         values["u_padding"] = float(before), float(above)
         arrows = has_arrows(self.textures, self._settings)
         coloured = arrows and self._settings.arrow_color == "scalars"

@@ -14,16 +14,10 @@ import numpy as np
 import pyvista as pv
 from vtkmodules.util.vtkConstants import VTK_FLOAT
 from vtkmodules.vtkRenderingCore import vtkRenderer
-from vtkmodules.vtkRenderingOpenGL2 import (
-    vtkOpenGLFramebufferObject,
-    vtkOpenGLRenderWindow,
-    vtkOpenGLVertexArrayObject,
-    vtkShaderProgram,
-    vtkTextureObject,
-)
+from vtkmodules.vtkRenderingOpenGL2 import vtkOpenGLRenderWindow, vtkShaderProgram
 
 from flowtex._util.array_types import Floats, Floats32, Ints
-from flowtex.rendering.shaders import shader_text
+from flowtex.rendering.vtk.even import EvenPass
 from flowtex.rendering.vtk.flow_mapper import (
     COORDINATE,
     CORNERS,
@@ -32,6 +26,7 @@ from flowtex.rendering.vtk.flow_mapper import (
     set_triangles,
 )
 from flowtex.rendering.vtk.layer import FlowLayer, insert_text, observe_draws, weak_callback
+from flowtex.rendering.vtk.targets import Rectangle, Target
 
 BLEND = 0x0BE2  #: OpenGL's number of blending.
 SCISSOR = 0x0C11  #: OpenGL's number of the scissor test.
@@ -39,8 +34,6 @@ DEPTH_TEST = 0x0B71  #: OpenGL's number of the depth test.
 EQUAL = 0x0202  #: OpenGL's number of the comparison of equal depths.
 ALWAYS = 0x0207  #: OpenGL's number of the comparison that is always true.
 MOST_LAYERS = 4096  #: Most layers, a power of two: their numbers are depths.
-#: VTK begins shaders with what it writes for these.
-MARKS = "//VTK::System::Dec\n//VTK::Output::Dec\n"
 SKIPPED = 3  #: Pixels from one to the next of those in which it is looked for tiles.
 LAST = -1.0  #: Before the actors are drawn, but after all else that waits for the start of a frame.
 
@@ -84,8 +77,8 @@ class DeferredPasses:
 
     def _draw(self) -> None:
         renderer = self._renderer()
-        owners = [owner for owner in self._shown if owner not in self._hidden]
-        layers = [layer for owner in owners for layer in self._shown[owner] if layer.deferred]
+        surfaces = self._surfaces()
+        layers = [layer for surface in surfaces for layer in surface]
         if renderer is None or not layers:
             return
         self._follow(layers)
@@ -108,13 +101,22 @@ class DeferredPasses:
         matrix = camera.GetCompositeProjectionTransformMatrix(renderer.GetTiledAspectRatio(), -1, 1)
         view = np.asarray(pv.array_from_vtkmatrix(matrix), dtype=float)
         corner, size = _part_of(window, renderer)
-        for layer in layers:
-            self._parts[layer].sum(buffers, view, corner, size)
-            layer.after_frame()
-            layer.sums = buffers.sums.texture
+        for surface in surfaces:
+            buffers.even.begin(window, buffers.sums)
+            for layer in surface:
+                self._parts[layer].sum(buffers, view, corner, size)
+                layer.after_frame()
+                layer.sums = buffers.sums.texture
+            buffers.even.draw(window, buffers.sums, surface[0].even_grain)
         places.Deactivate()
         state.PopFramebufferBindings()
         state.Pop()
+
+    def _surfaces(self) -> list[list[FlowLayer]]:
+        """Return the layers to draw of each surface that has any."""
+        owners = [owner for owner in self._shown if owner not in self._hidden]
+        surfaces = [[layer for layer in self._shown[owner] if layer.deferred] for owner in owners]
+        return [surface for surface in surfaces if surface]
 
     def places(self, layer: FlowLayer) -> Floats32:
         """Return places (N, 4) of enough pixels that are seen of a layer by itself."""
@@ -175,81 +177,15 @@ def _part_of(window: vtkOpenGLRenderWindow, renderer: pv.Renderer) -> tuple[Ints
     return low, high - low
 
 
-class _Target:
-    """A texture of four numbers in single precision, into which passes draw."""
-
-    def __init__(self) -> None:
-        self.texture, self.frame = vtkTextureObject(), vtkOpenGLFramebufferObject()
-        self._depth = vtkTextureObject()
-
-    def fit(self, window: vtkOpenGLRenderWindow, size: tuple[int, int]) -> None:
-        if (self.texture.GetWidth(), self.texture.GetHeight()) == size:
-            return
-        for part in (self.texture, self._depth, self.frame):
-            part.SetContext(window)
-        self.texture.Allocate2D(*size, 4, VTK_FLOAT)
-        self.frame.Bind()
-        self.frame.AddColorAttachment(0, self.texture)
-        self._depth.AllocateDepth(*size, vtkTextureObject.Float32)
-        self.frame.AddDepthAttachment(self._depth)
-
-    def bind(self) -> None:
-        self.frame.Bind()
-        self.frame.ActivateDrawBuffer(0)
-
-
-class _Rectangle:
-    """A program that draws a rectangle of pixels, with the text of a fragment shader."""
-
-    def __init__(self, name: str, variant: frozenset[str]) -> None:
-        self._texts = [
-            MARKS + shader_text(f"vtk/{text}.glsl", variant)
-            for text in ("sum_vertex", f"{name}_fragment")
-        ]
-        self._vertices = vtkOpenGLVertexArrayObject()
-        self._program: vtkShaderProgram | None = None
-        self._context = 0  # the time at which VTK made the context of both
-
-    @property
-    def program(self) -> vtkShaderProgram:
-        assert self._program is not None
-        return self._program
-
-    def use(self, window: vtkOpenGLRenderWindow) -> None:
-        cache = window.GetShaderCache()
-        if window.GetContextCreationTime() != self._context:
-            self._context = window.GetContextCreationTime()
-            self._vertices = vtkOpenGLVertexArrayObject()
-            self._program = None
-        if self._program is None:
-            self._program = cache.ReadyShaderProgram(self._texts[0], self._texts[1], "")
-        else:
-            cache.ReadyShaderProgram(self._program)
-
-    def draw(
-        self,
-        frame: vtkOpenGLFramebufferObject,
-        window: vtkOpenGLRenderWindow,
-        box: tuple[int, int, int, int],
-        depth: float,
-    ) -> None:
-        """Draw first and end of columns and rows of a frame buffer, at a depth from 0 to 1."""
-        self.program.SetUniformf("u_depth", 2 * depth - 1)
-        frame.StartNonOrtho(*window.GetActualSize())
-        window.GetState().vtkglViewport(0, 0, *window.GetActualSize())
-        # VTK draws it narrower by up to a pixel; the depths of what is beside it are others.
-        left, right, low, high = box
-        first, last = max(left - 1, 0), max(low - 1, 0)
-        frame.RenderQuad(first, right, last, high, self.program, self._vertices)
-
-
 class _Buffers:
     """The textures of one window: its renderers draw one after another, so they share them."""
 
     def __init__(self, window: vtkOpenGLRenderWindow) -> None:
         self.context = window.GetContextCreationTime()
-        self.places, self.sums = _Target(), _Target()
-        self._numbers = _Rectangle("depth", frozenset())
+        self.places = Target(4, has_depth=True)
+        self.sums = Target(4, has_depth=True)  #: Colour and texture of each pixel.
+        self.even = EvenPass()
+        self._numbers = Rectangle("depth", frozenset())
 
     def fit(self, window: vtkOpenGLRenderWindow) -> None:
         width, height = window.GetActualSize()
@@ -261,8 +197,7 @@ class _Buffers:
         program = self._numbers.program
         program.SetUniformi("u_places", self.places.texture.GetTextureUnit())
         program.SetUniformf("u_layers", MOST_LAYERS)
-        width, height = window.GetActualSize()
-        self._numbers.draw(self.sums.frame, window, (0, width, 0, height), 0.0)
+        self._numbers.draw(self.sums, window)
 
 
 #: Of renderers, and of windows.
@@ -303,7 +238,7 @@ class _Part:
         variant = layer.variant
         if variant == self._variant:
             return
-        self._variant, self._sum = variant, _Rectangle("sum", variant)
+        self._variant, self._sum = variant, Rectangle("sum", variant)
         arrays = {"flowtexCoordinate": COORDINATE}
         if "FLOWTEX_TRIANGLES" in variant:
             arrays["flowtexCorners"] = CORNERS
@@ -329,7 +264,7 @@ class _Part:
         x, y = corner.tolist()
         inside = (left + x, right + x, low + y, high + y)
         depth = self._number / MOST_LAYERS
-        self._sum.draw(buffers.sums.frame, layer.window, inside, depth)
+        self._sum.draw(buffers.sums, layer.window, inside, depth)
 
     def _before_places(self, program: vtkShaderProgram | None) -> None:
         layer = self._layer()

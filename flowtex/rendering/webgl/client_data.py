@@ -47,7 +47,7 @@ from flowtex.textures.tiles.pyramid import PATH_CELLS, Pyramid, TileKey
 from flowtex.textures.triangle_geometry import TriangleGeometry
 
 #: Shaders of the client.
-SHADERS = ("vertex", "fragment", "place", "surface", "full_vertex", "probe")
+SHADERS = ("vertex", "fragment", "place", "surface", "full_vertex", "probe", "even", "colour")
 SHADER_PAIRS = ("line", "ground", "body", "arrow")  #: Pairs of a vertex and a fragment shader.
 TRACE_SHADERS = ("trace", "layers")  #: Shaders of a client that traces.
 _COMMENTS = re.compile(r"[ \t]*//[^\n]*|^[ \t]+|\n(?=\s*(?://[^\n]*)?\n)", re.MULTILINE)

@@ -1,0 +1,57 @@
+"""The local mean of a texture, which renderers subtract: see ``shaders/common/even.glsl``."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from flowtex._util.array_types import Floats
+from flowtex.rendering.shaders import const
+from flowtex.rendering.uniforms import EVEN_RADII, Values
+
+
+@dataclass(frozen=True)
+class EvenBlocks:
+    """Blocks of pixels of a picture, whose means are blurred and interpolated."""
+
+    side: int  #: Of a block, in pixels, a power of two.
+    columns: int  #: Blocks of the picture, and one more on each side.
+    rows: int
+    variance: float  #: Of the bell of the blur, in blocks.
+    reach: int  #: Blocks of the blur on each side.
+
+    @classmethod
+    def of(cls, grain: float, size: tuple[int, int]) -> EvenBlocks:
+        """Return the blocks for a grain in pixels and a picture of a width and a height."""
+        deviation = const.EVEN_SIGMA * grain
+        doublings = np.floor(np.log2(np.sqrt(2.0) * deviation))
+        side = 2 ** max(int(doublings), 0)
+        variance = (deviation / side) ** 2
+        if side > 1:
+            # Means of blocks and linear interpolation have a variance of their own.
+            variance -= 0.25
+        columns, rows = (-(-pixels // side) + 2 for pixels in size)
+        reach = int(np.ceil(EVEN_RADII * np.sqrt(variance)))
+        return cls(side, columns, rows, float(variance), reach)
+
+    @property
+    def margin(self) -> int:
+        """Pixels beyond a part of a picture on which the part depends, whole blocks."""
+        return (self.reach + 2) * self.side
+
+
+def even_gain(near: Floats, stretch: Floats, values: Values) -> Floats:
+    """Return the factor that restores the deviation of a texture less its local mean, (N,).
+
+    The correlation of neighbouring weights and the width of streaks in grains are (N,), too.
+    """
+    near = np.clip(near, const.LEAST_NEAR, const.MOST_NEAR)
+    samples = -0.5 / np.log(near)
+    grain = 0.5 / const.BELL
+    across = grain * stretch**2
+    along = (grain + values["u_spacing"] ** 2 * samples) / stretch**2
+    bell = const.EVEN_SIGMA**2
+    once = across * along / ((across + bell) * (along + bell))
+    twice = across * along / ((across + 2 * bell) * (along + 2 * bell))
+    return np.asarray(1.0 / np.sqrt(1.0 - 2.0 * np.sqrt(once) + np.sqrt(twice)))

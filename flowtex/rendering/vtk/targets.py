@@ -1,0 +1,101 @@
+"""Textures off the screen, and programs that draw rectangles of pixels into them."""
+
+from __future__ import annotations
+
+from vtkmodules.util.vtkConstants import VTK_FLOAT
+from vtkmodules.vtkRenderingOpenGL2 import (
+    vtkOpenGLFramebufferObject,
+    vtkOpenGLRenderWindow,
+    vtkOpenGLVertexArrayObject,
+    vtkShaderProgram,
+    vtkTextureObject,
+)
+
+from flowtex.rendering.shaders import shader_text
+
+#: VTK begins shaders with what it writes for these.
+MARKS = "//VTK::System::Dec\n//VTK::Output::Dec\n"
+
+
+class Target:
+    """A texture of some channels in single precision, into which passes draw, maybe with depths."""
+
+    def __init__(self, channels: int, *, has_depth: bool = False) -> None:
+        self._channels = channels
+        self.texture = vtkTextureObject()
+        self.frame = vtkOpenGLFramebufferObject()
+        self._depth = None
+        if has_depth:
+            self._depth = vtkTextureObject()
+
+    @property
+    def size(self) -> tuple[int, int]:
+        """Width and height in pixels."""
+        return self.texture.GetWidth(), self.texture.GetHeight()
+
+    def fit(self, window: vtkOpenGLRenderWindow, size: tuple[int, int]) -> None:
+        """Have a texture of a width and a height."""
+        if self.size == size:
+            return
+        self.frame.SetContext(window)
+        self.frame.Bind()
+        self.texture.SetContext(window)
+        self.texture.Allocate2D(*size, self._channels, VTK_FLOAT)
+        self.frame.AddColorAttachment(0, self.texture)
+        if self._depth is not None:
+            self._depth.SetContext(window)
+            self._depth.AllocateDepth(*size, vtkTextureObject.Float32)
+            self.frame.AddDepthAttachment(self._depth)
+
+    def bind(self) -> None:
+        """Draw into the texture from now on."""
+        self.frame.Bind()
+        self.frame.ActivateDrawBuffer(0)
+
+
+class Rectangle:
+    """A program that draws a rectangle of pixels, with the text of a fragment shader."""
+
+    def __init__(self, name: str, variant: frozenset[str]) -> None:
+        self._texts = [
+            MARKS + shader_text(f"vtk/{text}.glsl", variant)
+            for text in ("sum_vertex", f"{name}_fragment")
+        ]
+        self._vertices = vtkOpenGLVertexArrayObject()
+        self._program: vtkShaderProgram | None = None
+        self._context = 0  # the time at which VTK made the context of both
+
+    @property
+    def program(self) -> vtkShaderProgram:
+        """The program in use."""
+        assert self._program is not None
+        return self._program
+
+    def use(self, window: vtkOpenGLRenderWindow) -> None:
+        """Draw with the program from now on."""
+        cache = window.GetShaderCache()
+        if window.GetContextCreationTime() != self._context:
+            self._context = window.GetContextCreationTime()
+            self._vertices = vtkOpenGLVertexArrayObject()
+            self._program = None
+        if self._program is None:
+            self._program = cache.ReadyShaderProgram(self._texts[0], self._texts[1], "")
+        else:
+            cache.ReadyShaderProgram(self._program)
+
+    def draw(
+        self,
+        target: Target,
+        window: vtkOpenGLRenderWindow,
+        box: tuple[int, int, int, int] | None = None,
+        depth: float = 0.0,
+    ) -> None:
+        """Draw first and end of columns and rows of a target, or all, at a depth from 0 to 1."""
+        width, height = target.size
+        self.program.SetUniformf("u_depth", 2 * depth - 1)
+        target.frame.StartNonOrtho(width, height)
+        window.GetState().vtkglViewport(0, 0, width, height)
+        # VTK draws it narrower by up to a pixel; the depths of what is beside it are others.
+        left, right, low, high = box or (0, width, 0, height)
+        first, last = max(left - 1, 0), max(low - 1, 0)
+        target.frame.RenderQuad(first, right, last, high, self.program, self._vertices)

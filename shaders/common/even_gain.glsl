@@ -1,0 +1,16 @@
+// The deviation that a texture keeps when its local mean is subtracted (even.glsl).
+
+// Factor that brings the texture back to the deviation 1, from what is known of its correlation, a bell along
+// the streak and one across it: ``near`` is the correlation of the weights of neighbouring samples, and a
+// streak is ``stretch`` grains wide.
+float flowtexEvenGain(float near, float stretch)
+{
+  float samples = -0.5 / log(clamp(near, FLOWTEX_LEAST_NEAR, FLOWTEX_MOST_NEAR));
+  float grain = 0.5 / FLOWTEX_BELL;
+  float square = stretch * stretch;
+  vec2 variance = vec2(grain * square, (grain + u_spacing * u_spacing * samples) / square);
+  const float bell = FLOWTEX_EVEN_SIGMA * FLOWTEX_EVEN_SIGMA;
+  vec2 once = variance / (variance + bell);
+  vec2 twice = variance / (variance + 2.0 * bell);
+  return inversesqrt(1.0 - 2.0 * sqrt(once.x * once.y) + sqrt(twice.x * twice.y));
+}
