@@ -8,7 +8,10 @@ import type { Header } from "./protocol.ts";
 export interface EvenBlocks {
   /** Of a block, in pixels. */
   side: number;
-  /** Blocks of the picture, and one more on each side. */
+  /** Lower left pixel of the first one, and column and row that follow the surface. */
+  first: [number, number];
+  end: [number, number];
+  /** Columns and rows of them, and one more on each side. */
   columns: number;
   rows: number;
   /** Of the bell of the blur, in blocks, which goes over so many of them on each side. */
@@ -16,20 +19,22 @@ export interface EvenBlocks {
   reach: number;
 }
 
-/** The blocks for a grain in pixels. */
+/** The blocks for a grain in pixels, by first column and row, and those that follow. */
 export function evenBlocks(
   { sigma, radii }: Header["constants"]["even"],
   grain: number,
-  width: number,
-  height: number,
+  [left, low, right, high]: readonly number[],
 ): EvenBlocks {
   const deviation = sigma * grain;
   const side = 2 ** Math.max(Math.floor(Math.log2(Math.SQRT2 * deviation)), 0);
   // Means of blocks and linear interpolation have a variance of their own.
   const own = side > 1 ? 0.25 : 0;
   const variance = (deviation / side) ** 2 - own;
-  const [columns, rows] = [width, height].map((pixels) => Math.ceil(pixels / side) + 2);
-  return { side, columns, rows, variance, reach: Math.ceil(radii * Math.sqrt(variance)) };
+  // Blocks stay where they are when the surface moves.
+  const [x, y] = [left, low].map((at) => Math.floor(at / side) * side);
+  const [columns, rows] = [right - x, high - y].map((pixels) => Math.ceil(pixels / side) + 2);
+  const reach = Math.ceil(radii * Math.sqrt(variance));
+  return { side, first: [x, y], end: [right, high], columns, rows, variance, reach };
 }
 
 interface Means {
@@ -51,16 +56,16 @@ export class LocalMeans {
   }
 
   /** Draw the means of the texture, which is in its unit, and blur them; they are in their unit from now on. */
-  draw(means: Program, blur: Program, blocks: EvenBlocks, width: number, height: number): void {
+  draw(means: Program, blur: Program, blocks: EvenBlocks): void {
     const { graphics } = this;
     const gl = graphics.context;
-    const { side, columns, rows, variance, reach } = blocks;
+    const { side, first: u_first, end: u_end, columns, rows, variance, reach } = blocks;
     this.fit(columns, rows);
     gl.bindVertexArray(null);
     gl.viewport(0, 0, columns, rows);
     for (const test of [gl.SCISSOR_TEST, gl.DEPTH_TEST, gl.BLEND]) gl.disable(test);
     const [first, second] = this.targets;
-    graphics.programs.use(means, { u_pixels: [width, height], u_side: side });
+    graphics.programs.use(means, { u_first, u_end, u_side: side });
     this.pass(first);
     const values = { u_blocks: [columns, rows], u_variance: variance, u_reach: reach };
     graphics.programs.use(blur, { ...values, u_along: [1, 0] });

@@ -6,7 +6,7 @@
 
 import { projection, type Camera } from "./camera.ts";
 import type { Graphics } from "./context.ts";
-import { LocalMeans, type EvenBlocks } from "./even.ts";
+import { evenBlocks, LocalMeans } from "./even.ts";
 import { seenBlocks, type Covered, type Seen } from "./meshlevels.ts";
 import { SAMPLERS, type Program } from "./programs.ts";
 import type { Scene } from "./scene.ts";
@@ -151,17 +151,36 @@ export class Places {
     gl.bindFramebuffer(gl.FRAMEBUFFER, null);
   }
 
-  /** Have colours computed from the sums, less their local means if there are blocks. */
-  colour(blocks: EvenBlocks | null, valuesOf: (scene: Scene) => Uniforms): void {
-    const { graphics, layers, means, width, height, target } = this;
+  /** Have colours computed from the sums, less their local means for a grain in pixels. */
+  colour(grain: number | null, valuesOf: (scene: Scene) => Uniforms): void {
+    const { graphics, layers, means, height, target } = this;
     const gl = graphics.context;
     const [{ scene: root }] = layers;
     this.bind();
-    if (blocks) means.draw(root.programs("blocks"), root.programs("blur"), blocks, width, height);
+    const blocks = grain === null ? null : evenBlocks(root.header.constants.even, grain, this.box);
+    if (blocks) means.draw(root.programs("blocks"), root.programs("blur"), blocks);
     gl.bindFramebuffer(gl.FRAMEBUFFER, target?.frames[2] ?? null);
-    const side = blocks?.side ?? 1;
-    this.pixels(root.programs("colour"), 0, height, (scene) => ({ ...valuesOf(scene), u_side: side }));
+    const own = { u_first: blocks?.first ?? [0, 0], u_side: blocks?.side ?? 1 };
+    this.pixels(root.programs("colour"), 0, height, (scene) => ({ ...valuesOf(scene), ...own }));
     gl.bindFramebuffer(gl.FRAMEBUFFER, null);
+  }
+
+  /** First column and row of what is seen of a layer, and those that follow. */
+  private boxOf({ box }: Seen): number[] {
+    const { width, height } = this;
+    const [left, low, right, high] = box.map((at, side) => (0.5 + 0.5 * at) * (side % 2 ? height : width));
+    const first = [left, low].map((at) => Math.max(Math.floor(at), 0));
+    return [...first, Math.min(Math.ceil(right), width), Math.min(Math.ceil(high), height)];
+  }
+
+  /** The same of all layers. */
+  private get box(): number[] {
+    const boxes = this.seen.map((seen) => this.boxOf(seen)).filter(([x, y, right, high]) => x < right && y < high);
+    if (!boxes.length) return [0, 0, 1, 1];
+    return [0, 1, 2, 3].map((side) => {
+      const ends = boxes.map((box) => box[side]);
+      return side < 2 ? Math.min(...ends) : Math.max(...ends);
+    });
   }
 
   /** Draw the pixels of all layers in some rows by a program. */
@@ -174,9 +193,9 @@ export class Places {
     gl.disable(gl.BLEND);
     gl.bindVertexArray(null);
     this.layers.forEach(({ scene }, n) => {
-      const [left, low, right, high] = this.seen[n].box.map((at, side) => (0.5 + 0.5 * at) * (side % 2 ? height : width));
-      const [x, y] = [Math.max(Math.floor(left), 0), Math.max(Math.floor(low), bottom)];
-      const [w, h] = [Math.min(Math.ceil(right), width) - x, Math.min(Math.ceil(high), bottom + rows) - y];
+      const [left, low, right, high] = this.boxOf(this.seen[n]);
+      const [x, y] = [left, Math.max(low, bottom)];
+      const [w, h] = [right - x, Math.min(high, bottom + rows) - y];
       if (w <= 0 || h <= 0) return;
       gl.scissor(x, y, w, h);
       const values = valuesOf(scene);
@@ -260,7 +279,7 @@ export class Places {
     const { key } = this;
     const size = { width: Math.max(width, target?.width ?? 0), height: Math.max(height, target?.height ?? 0) };
     this.dispose();
-    const textures = [gl.RGBA32UI, gl.DEPTH_COMPONENT24, gl.RGBA8, 0, gl.RGBA16F, gl.RG16F].map((format) => {
+    const textures = [gl.RGBA32UI, gl.DEPTH_COMPONENT24, gl.RGBA8, 0, gl.RGBA16F, gl.RG32F].map((format) => {
       const texture = graphics.counted(gl.createTexture());
       gl.bindTexture(gl.TEXTURE_2D, texture);
       if (format) gl.texStorage2D(gl.TEXTURE_2D, 1, format, size.width, size.height);

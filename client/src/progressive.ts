@@ -6,7 +6,6 @@ import * as mat2d from "gl-matrix/esm/mat2d.js";
 import { Camera, projection, rays } from "./camera.ts";
 import type { Graphics } from "./context.ts";
 import type { EarthView } from "./earthlayer.ts";
-import { evenBlocks } from "./even.ts";
 import type { Layer, PlaceAt, Places } from "./places.ts";
 import type { Program } from "./programs.ts";
 import { draftUniforms, learnedPrice, motionFactor, movingTime, quality, rowsIn } from "./quality.ts";
@@ -304,15 +303,12 @@ export class ProgressiveRenderer {
     const { scene } = this.content;
     const { camera } = this.viewer;
     if (!scene || !camera) return;
-    const { width, height } = places;
+    const { height } = places;
     const view = this.viewer.view(shown, this.density(height));
     const draft = this.isDraft(height, samples);
     const valuesOf = (layer: Scene) => this.values(layer, scene, camera, view, samples, draft);
-    const { u_grain: grain } = valuesOf(scene);
-    const { header } = scene;
-    const even = isEven(header, this.viewer.settings);
-    const blocks = even ? evenBlocks(header.constants.even, Number(grain), width, height) : null;
-    places.colour(blocks, valuesOf);
+    const grain = isEven(scene.header, this.viewer.settings) ? Number(valuesOf(scene).u_grain) : null;
+    places.colour(grain, valuesOf);
   }
 
   /** Show the picture whose sums are there, with what is around the surface. */

@@ -13,17 +13,18 @@ from flowtex.rendering.uniforms import EVEN_RADII, Values
 
 @dataclass(frozen=True)
 class EvenBlocks:
-    """Blocks of pixels of a picture, whose means are blurred and interpolated."""
+    """Blocks of pixels around a surface, whose means are blurred and interpolated."""
 
     side: int  #: Of a block, in pixels, a power of two.
-    columns: int  #: Blocks of the picture, and one more on each side.
-    rows: int
+    first: tuple[int, int]  #: Lower left pixel of the first block.
+    end: tuple[int, int]  #: Column and row that follow the pixels of the surface.
+    size: tuple[int, int]  #: Columns and rows of blocks, and one more on each side.
     variance: float  #: Of the bell of the blur, in blocks.
     reach: int  #: Blocks of the blur on each side.
 
     @classmethod
-    def of(cls, grain: float, size: tuple[int, int]) -> EvenBlocks:
-        """Return the blocks for a grain in pixels and a picture of a width and a height."""
+    def of(cls, grain: float, box: tuple[int, int, int, int]) -> EvenBlocks:
+        """Return the blocks for a grain in pixels, by first and end of columns and rows."""
         deviation = const.EVEN_SIGMA * grain
         doublings = np.floor(np.log2(np.sqrt(2.0) * deviation))
         side = 2 ** max(int(doublings), 0)
@@ -31,9 +32,13 @@ class EvenBlocks:
         if side > 1:
             # Means of blocks and linear interpolation have a variance of their own.
             variance -= 0.25
-        columns, rows = (-(-pixels // side) + 2 for pixels in size)
+        left, right, low, high = box
+        # Blocks stay where they are when the surface moves.
+        first = (left // side * side, low // side * side)
+        end = (right, high)
+        columns, rows = (-(-(end[n] - first[n]) // side) + 2 for n in range(2))
         reach = int(np.ceil(EVEN_RADII * np.sqrt(variance)))
-        return cls(side, columns, rows, float(variance), reach)
+        return cls(side, first, end, (columns, rows), float(variance), reach)
 
     @property
     def margin(self) -> int:

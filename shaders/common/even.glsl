@@ -12,14 +12,15 @@
 
 #ifdef FLOWTEX_EVEN_BLOCKS
 uniform highp sampler2D u_texture; // texture of each pixel of the surface, zero beside it
-uniform ivec2 u_pixels;            // width and height of the picture
+uniform ivec2 u_first;             // lower left pixel of the first block,
+uniform ivec2 u_end;               // and those that follow the upper right of all
 uniform int u_side;                // of a block, in pixels
 
-// Mean of the texture in the block of a texel. Around the blocks of the picture there is one more each.
+// Mean of the texture in the block of a texel. Before and after those of the surface there is one more.
 float flowtexBlock(ivec2 texel)
 {
-  ivec2 low = max((texel - 1) * u_side, ivec2(0));
-  ivec2 high = min(texel * u_side, u_pixels);
+  ivec2 low = max(u_first + (texel - 1) * u_side, u_first);
+  ivec2 high = min(u_first + texel * u_side, u_end);
   float sum = 0.0;
   for (int y = low.y; y < high.y; ++y)
     for (int x = low.x; x < high.x; ++x)
@@ -54,12 +55,13 @@ float flowtexBlurred(ivec2 texel)
 
 #ifdef FLOWTEX_EVEN_LAID
 uniform highp sampler2D u_means; // of the blocks, blurred
+uniform ivec2 u_first;
 uniform int u_side;
 
 // Mean of the texture around a pixel.
 float flowtexMeanAround(ivec2 pixel)
 {
-  vec2 at = (vec2(pixel) + 0.5) / float(u_side) + 0.5;
+  vec2 at = (vec2(pixel - u_first) + 0.5) / float(u_side) + 0.5;
   ivec2 texel = ivec2(at);
   vec2 part = at - vec2(texel);
   vec2 low = vec2(texelFetch(u_means, texel, 0).r, texelFetch(u_means, texel + ivec2(0, 1), 0).r);

@@ -833,25 +833,25 @@ shape,at=(of,count2)=>{let[own,one,two]=nodes.map(of);return clamp(own+s*(one-ow
 to,between3]=moment,values={},others=scalars.choices.map((choice,number)=>({...choice,number}));for(let each of[scalars,
 ...others]){let names=scene.scalarParts(from,to,each),[before,after]=names.map(part=>parts.get(part)?.data);if(each.name===
 null||each.name in values||!before||!after)continue;let value=n=>before[n]+between3*(after[n]-before[n]);values[each.name]=
-each.flat?value(cell):interpolated(corners,value)}return values}function evenBlocks({sigma,radii},grain,width,height){let deviation=sigma*grain,side=2**Math.max(Math.floor(Math.log2(Math.
-SQRT2*deviation)),0),own=side>1?.25:0,variance=(deviation/side)**2-own,[columns,rows]=[width,height].map(pixels=>Math.ceil(
-pixels/side)+2);return{side,columns,rows,variance,reach:Math.ceil(radii*Math.sqrt(variance))}}var UNIT=SAMPLERS.indexOf(
-"u_means"),LocalMeans=class{graphics;targets=[];columns=0;rows=0;constructor(graphics){this.graphics=graphics}draw(means,blur,blocks,width,height){
-let{graphics}=this,gl=graphics.context,{side,columns,rows,variance,reach}=blocks;this.fit(columns,rows),gl.bindVertexArray(
-null),gl.viewport(0,0,columns,rows);for(let test of[gl.SCISSOR_TEST,gl.DEPTH_TEST,gl.BLEND])gl.disable(test);let[first,second]=this.
-targets;graphics.programs.use(means,{u_pixels:[width,height],u_side:side}),this.pass(first);let values={u_blocks:[columns,
-rows],u_variance:variance,u_reach:reach};graphics.programs.use(blur,{...values,u_along:[1,0]}),this.pass(second,first),graphics.
-programs.use(blur,{u_along:[0,1]}),this.pass(first,second),this.bind(first)}dispose(){for(let{frame,texture}of this.targets)
-this.graphics.free("Framebuffer",frame),this.graphics.free("Texture",texture);this.targets=[],this.columns=this.rows=0}pass(to,from){
-let gl=this.graphics.context;from&&this.bind(from),gl.bindFramebuffer(gl.FRAMEBUFFER,to.frame),gl.drawArrays(gl.TRIANGLES,
-0,3)}bind({texture}){let gl=this.graphics.context;gl.activeTexture(gl.TEXTURE0+UNIT),gl.bindTexture(gl.TEXTURE_2D,texture),
-gl.activeTexture(gl.TEXTURE0+SAMPLERS.length)}fit(columns,rows){if(this.columns>=columns&&this.rows>=rows)return;let[wide,
-high]=[Math.max(columns,this.columns),Math.max(rows,this.rows)];this.dispose();let{graphics}=this,gl=graphics.context;this.
-targets=[0,1].map(()=>{let texture=graphics.counted(gl.createTexture());gl.bindTexture(gl.TEXTURE_2D,texture),gl.texStorage2D(
-gl.TEXTURE_2D,1,gl.R32F,wide,high),gl.texParameteri(gl.TEXTURE_2D,gl.TEXTURE_MIN_FILTER,gl.NEAREST),gl.texParameteri(gl.
-TEXTURE_2D,gl.TEXTURE_MAG_FILTER,gl.NEAREST);let frame=graphics.counted(gl.createFramebuffer());return gl.bindFramebuffer(
-gl.FRAMEBUFFER,frame),gl.framebufferTexture2D(gl.FRAMEBUFFER,gl.COLOR_ATTACHMENT0,gl.TEXTURE_2D,texture,0),{frame,texture}}),
-[this.columns,this.rows]=[wide,high]}};var MOST_SIDE_PX=3,PLACE3=5;function mostDoublings({shape:shape2,triangles},blocks,positions2,cells){let[rows,columns]=blocks.
+each.flat?value(cell):interpolated(corners,value)}return values}function evenBlocks({sigma,radii},grain,[left,low,right,high]){let deviation=sigma*grain,side=2**Math.max(Math.floor(Math.
+log2(Math.SQRT2*deviation)),0),own=side>1?.25:0,variance=(deviation/side)**2-own,[x,y]=[left,low].map(at=>Math.floor(at/
+side)*side),[columns,rows]=[right-x,high-y].map(pixels=>Math.ceil(pixels/side)+2),reach=Math.ceil(radii*Math.sqrt(variance));
+return{side,first:[x,y],end:[right,high],columns,rows,variance,reach}}var UNIT=SAMPLERS.indexOf("u_means"),LocalMeans=class{graphics;targets=[];columns=0;rows=0;constructor(graphics){
+this.graphics=graphics}draw(means,blur,blocks){let{graphics}=this,gl=graphics.context,{side,first:u_first,end:u_end,columns,
+rows,variance,reach}=blocks;this.fit(columns,rows),gl.bindVertexArray(null),gl.viewport(0,0,columns,rows);for(let test of[
+gl.SCISSOR_TEST,gl.DEPTH_TEST,gl.BLEND])gl.disable(test);let[first,second]=this.targets;graphics.programs.use(means,{u_first,
+u_end,u_side:side}),this.pass(first);let values={u_blocks:[columns,rows],u_variance:variance,u_reach:reach};graphics.programs.
+use(blur,{...values,u_along:[1,0]}),this.pass(second,first),graphics.programs.use(blur,{u_along:[0,1]}),this.pass(first,
+second),this.bind(first)}dispose(){for(let{frame,texture}of this.targets)this.graphics.free("Framebuffer",frame),this.graphics.
+free("Texture",texture);this.targets=[],this.columns=this.rows=0}pass(to,from){let gl=this.graphics.context;from&&this.bind(
+from),gl.bindFramebuffer(gl.FRAMEBUFFER,to.frame),gl.drawArrays(gl.TRIANGLES,0,3)}bind({texture}){let gl=this.graphics.context;
+gl.activeTexture(gl.TEXTURE0+UNIT),gl.bindTexture(gl.TEXTURE_2D,texture),gl.activeTexture(gl.TEXTURE0+SAMPLERS.length)}fit(columns,rows){
+if(this.columns>=columns&&this.rows>=rows)return;let[wide,high]=[Math.max(columns,this.columns),Math.max(rows,this.rows)];
+this.dispose();let{graphics}=this,gl=graphics.context;this.targets=[0,1].map(()=>{let texture=graphics.counted(gl.createTexture());
+gl.bindTexture(gl.TEXTURE_2D,texture),gl.texStorage2D(gl.TEXTURE_2D,1,gl.R32F,wide,high),gl.texParameteri(gl.TEXTURE_2D,
+gl.TEXTURE_MIN_FILTER,gl.NEAREST),gl.texParameteri(gl.TEXTURE_2D,gl.TEXTURE_MAG_FILTER,gl.NEAREST);let frame=graphics.counted(
+gl.createFramebuffer());return gl.bindFramebuffer(gl.FRAMEBUFFER,frame),gl.framebufferTexture2D(gl.FRAMEBUFFER,gl.COLOR_ATTACHMENT0,
+gl.TEXTURE_2D,texture,0),{frame,texture}}),[this.columns,this.rows]=[wide,high]}};var MOST_SIDE_PX=3,PLACE3=5;function mostDoublings({shape:shape2,triangles},blocks,positions2,cells){let[rows,columns]=blocks.
 shape,most=new Int8Array(rows*columns).fill(triangles?0:Math.log2(cells));for(let n=0;n<positions2.length;n+=3){if(Number.
 isFinite(positions2[n]))continue;let[j,i]=[Math.floor(n/3/shape2[1]),n/3%shape2[1]];for(let row2 of[Math.floor((j-1)/cells),
 Math.floor(j/cells)])for(let column of[Math.floor((i-1)/cells),Math.floor(i/cells)])row2>=0&&row2<rows&&column>=0&&column<
@@ -889,45 +889,48 @@ shape2[1-k]-1-at)/2**level));graphics.programs.use(program,{u_block:[...first,le
 x*y)})})}sum(program,top,rows,valuesOf){let{graphics,width,height,target}=this,gl=graphics.context,bottom=height-top-rows;
 gl.bindFramebuffer(gl.FRAMEBUFFER,target?.frames[1]??null),gl.enable(gl.SCISSOR_TEST),gl.scissor(0,bottom,width,rows),gl.
 clearBufferfv(gl.COLOR,1,[0,0,0,0]),this.pixels(program,bottom,rows,valuesOf),gl.readPixels(0,0,1,1,gl.RGBA,gl.FLOAT,new Float32Array(
-4)),gl.bindFramebuffer(gl.FRAMEBUFFER,null)}colour(blocks,valuesOf){let{graphics,layers,means,width,height,target}=this,
-gl=graphics.context,[{scene:root}]=layers;this.bind(),blocks&&means.draw(root.programs("blocks"),root.programs("blur"),blocks,
-width,height),gl.bindFramebuffer(gl.FRAMEBUFFER,target?.frames[2]??null);let side=blocks?.side??1;this.pixels(root.programs(
-"colour"),0,height,scene=>({...valuesOf(scene),u_side:side})),gl.bindFramebuffer(gl.FRAMEBUFFER,null)}pixels(program,bottom,rows,valuesOf){
-let{graphics,width,height}=this,gl=graphics.context;gl.viewport(0,0,width,height),gl.enable(gl.SCISSOR_TEST),gl.disable(
-gl.DEPTH_TEST),gl.disable(gl.BLEND),gl.bindVertexArray(null),this.layers.forEach(({scene},n)=>{let[left,low,right,high]=this.
-seen[n].box.map((at,side)=>(.5+.5*at)*(side%2?height:width)),[x,y]=[Math.max(Math.floor(left),0),Math.max(Math.floor(low),
-bottom)],[w,h]=[Math.min(Math.ceil(right),width)-x,Math.min(Math.ceil(high),bottom+rows)-y];if(w<=0||h<=0)return;gl.scissor(
-x,y,w,h);let values=valuesOf(scene);this.bind(),graphics.programs.use(program,{...values,u_layer:n+1}),gl.drawArrays(gl.
-TRIANGLES,0,3)})}show(program){let gl=this.graphics.context;this.bind(),gl.bindVertexArray(null),this.graphics.programs.
-use(program,{u_bottom:0}),gl.drawArrays(gl.TRIANGLES,0,3)}at(x,y){let{graphics,target,layers}=this,gl=graphics.context,[
-column,row2]=[(.5+.5*x)*this.width,(.5+.5*y)*this.height],left=clamp(Math.floor(column-.5),0,this.width-2),low=clamp(Math.
-floor(row2-.5),0,this.height-2),bits=new Uint32Array(16);gl.bindFramebuffer(gl.FRAMEBUFFER,target?.frames[0]??null),gl.readPixels(
-left,low,2,2,gl.RGBA_INTEGER,gl.UNSIGNED_INT,bits),gl.bindFramebuffer(gl.FRAMEBUFFER,null);let own=+(column>=left+1)+2*+(row2>=
-low+1),at=4*([own,own^1,own^2,own^3].find(n=>bits[4*n+3])??own),[u,v2]=new Float32Array(bits.buffer,4*at,2);return bits[at+
-3]?{layer:layers[bits[at+3]-1],coordinate:[u,v2],triangle:bits[at+2]}:null}dispose(){let{graphics,target}=this;for(let texture of target?.
-textures??[])graphics.free("Texture",texture);for(let frame of target?.frames??[])graphics.free("Framebuffer",frame);this.
-means.dispose(),this.target=null,this.key=""}sendStrides(){let{layers,seen,target}=this,gl=this.graphics.context,[{scene:root}]=layers,
-{pyramid,geometry}=root.header,finest=geometry.triangles?[1,1]:pyramid?.blocks[0]??root.blocks.shape;this.squares=Math.max(
-Math.ceil(Math.log2(Math.max(...finest)/MOST_SQUARES)),0);let scale3=2**-this.squares,[rows,columns]=finest.map(n=>Math.
-ceil(n*scale3)),strides=new Uint8Array(rows*columns);layers.forEach(({scene,key:[step,...tile]},n)=>{let across=scene.blocks.
-shape[1],size=2**step*scale3;seen[n].levels.forEach((level,block)=>{if(level<0||geometry.triangles)return;let[[top,bottom],
-[left,right]]=[Math.floor(block/across),block%across].map((at,k)=>{let first=(at+tile[k]*(pyramid?.tileBlocks??0))*size;
-return[Math.floor(first),Math.min(Math.ceil(first+size),[rows,columns][k])]});for(let j=top;j<bottom;j+=1)for(let i=left+
-j*columns;i<right+j*columns;i+=1)strides[i]=Math.max(strides[i],step+level)})}),gl.activeTexture(gl.TEXTURE0+UNITS2[3]),
-gl.bindTexture(gl.TEXTURE_2D,target?.textures[3]??null),gl.pixelStorei(gl.UNPACK_ALIGNMENT,1),gl.texImage2D(gl.TEXTURE_2D,
-0,gl.R8UI,columns,rows,0,gl.RED_INTEGER,gl.UNSIGNED_BYTE,strides)}make(width,height){let{target,graphics}=this;if(target&&
-target.width>=width&&target.height>=height)return target;let gl=graphics.context,{key}=this,size={width:Math.max(width,target?.
-width??0),height:Math.max(height,target?.height??0)};this.dispose();let textures=[gl.RGBA32UI,gl.DEPTH_COMPONENT24,gl.RGBA8,
-0,gl.RGBA16F,gl.RG16F].map(format=>{let texture=graphics.counted(gl.createTexture());return gl.bindTexture(gl.TEXTURE_2D,
-texture),format&&gl.texStorage2D(gl.TEXTURE_2D,1,format,size.width,size.height),gl.texParameteri(gl.TEXTURE_2D,gl.TEXTURE_MIN_FILTER,
-gl.NEAREST),gl.texParameteri(gl.TEXTURE_2D,gl.TEXTURE_MAG_FILTER,gl.NEAREST),texture}),[first,second]=[gl.COLOR_ATTACHMENT0,
-gl.COLOR_ATTACHMENT1],[places,depths,colours,,below,sums]=textures,frames=[[[first,places],[gl.DEPTH_ATTACHMENT,depths]],
-[[first,below],[second,sums]],[[first,colours]]].map(attached=>{let frame=graphics.counted(gl.createFramebuffer());gl.bindFramebuffer(
-gl.FRAMEBUFFER,frame);for(let[point,texture]of attached)gl.framebufferTexture2D(gl.FRAMEBUFFER,point,gl.TEXTURE_2D,texture,
-0);return gl.drawBuffers(attached.map(([point])=>point).filter(point=>point!==gl.DEPTH_ATTACHMENT)),frame});return this.
-key=key,this.target={frames,textures,...size}}bind(){let gl=this.graphics.context;UNITS2.forEach((unit3,n)=>{gl.activeTexture(
-gl.TEXTURE0+unit3),gl.bindTexture(gl.TEXTURE_2D,this.target?.textures[n]??null)}),gl.activeTexture(gl.TEXTURE0+SAMPLERS.
-length)}};function invert(out,a){var aa=a[0],ab=a[1],ac=a[2],ad=a[3],atx=a[4],aty=a[5],det=aa*ad-ab*ac;return det?(det=1/det,out[0]=
+4)),gl.bindFramebuffer(gl.FRAMEBUFFER,null)}colour(grain,valuesOf){let{graphics,layers,means,height,target}=this,gl=graphics.
+context,[{scene:root}]=layers;this.bind();let blocks=grain===null?null:evenBlocks(root.header.constants.even,grain,this.
+box);blocks&&means.draw(root.programs("blocks"),root.programs("blur"),blocks),gl.bindFramebuffer(gl.FRAMEBUFFER,target?.
+frames[2]??null);let own={u_first:blocks?.first??[0,0],u_side:blocks?.side??1};this.pixels(root.programs("colour"),0,height,
+scene=>({...valuesOf(scene),...own})),gl.bindFramebuffer(gl.FRAMEBUFFER,null)}boxOf({box}){let{width,height}=this,[left,
+low,right,high]=box.map((at,side)=>(.5+.5*at)*(side%2?height:width));return[...[left,low].map(at=>Math.max(Math.floor(at),
+0)),Math.min(Math.ceil(right),width),Math.min(Math.ceil(high),height)]}get box(){let boxes=this.seen.map(seen=>this.boxOf(
+seen)).filter(([x,y,right,high])=>x<right&&y<high);return boxes.length?[0,1,2,3].map(side=>{let ends2=boxes.map(box=>box[side]);
+return side<2?Math.min(...ends2):Math.max(...ends2)}):[0,0,1,1]}pixels(program,bottom,rows,valuesOf){let{graphics,width,
+height}=this,gl=graphics.context;gl.viewport(0,0,width,height),gl.enable(gl.SCISSOR_TEST),gl.disable(gl.DEPTH_TEST),gl.disable(
+gl.BLEND),gl.bindVertexArray(null),this.layers.forEach(({scene},n)=>{let[left,low,right,high]=this.boxOf(this.seen[n]),[
+x,y]=[left,Math.max(low,bottom)],[w,h]=[right-x,Math.min(high,bottom+rows)-y];if(w<=0||h<=0)return;gl.scissor(x,y,w,h);let values=valuesOf(
+scene);this.bind(),graphics.programs.use(program,{...values,u_layer:n+1}),gl.drawArrays(gl.TRIANGLES,0,3)})}show(program){
+let gl=this.graphics.context;this.bind(),gl.bindVertexArray(null),this.graphics.programs.use(program,{u_bottom:0}),gl.drawArrays(
+gl.TRIANGLES,0,3)}at(x,y){let{graphics,target,layers}=this,gl=graphics.context,[column,row2]=[(.5+.5*x)*this.width,(.5+.5*
+y)*this.height],left=clamp(Math.floor(column-.5),0,this.width-2),low=clamp(Math.floor(row2-.5),0,this.height-2),bits=new Uint32Array(
+16);gl.bindFramebuffer(gl.FRAMEBUFFER,target?.frames[0]??null),gl.readPixels(left,low,2,2,gl.RGBA_INTEGER,gl.UNSIGNED_INT,
+bits),gl.bindFramebuffer(gl.FRAMEBUFFER,null);let own=+(column>=left+1)+2*+(row2>=low+1),at=4*([own,own^1,own^2,own^3].find(
+n=>bits[4*n+3])??own),[u,v2]=new Float32Array(bits.buffer,4*at,2);return bits[at+3]?{layer:layers[bits[at+3]-1],coordinate:[
+u,v2],triangle:bits[at+2]}:null}dispose(){let{graphics,target}=this;for(let texture of target?.textures??[])graphics.free(
+"Texture",texture);for(let frame of target?.frames??[])graphics.free("Framebuffer",frame);this.means.dispose(),this.target=
+null,this.key=""}sendStrides(){let{layers,seen,target}=this,gl=this.graphics.context,[{scene:root}]=layers,{pyramid,geometry}=root.
+header,finest=geometry.triangles?[1,1]:pyramid?.blocks[0]??root.blocks.shape;this.squares=Math.max(Math.ceil(Math.log2(Math.
+max(...finest)/MOST_SQUARES)),0);let scale3=2**-this.squares,[rows,columns]=finest.map(n=>Math.ceil(n*scale3)),strides=new Uint8Array(
+rows*columns);layers.forEach(({scene,key:[step,...tile]},n)=>{let across=scene.blocks.shape[1],size=2**step*scale3;seen[n].
+levels.forEach((level,block)=>{if(level<0||geometry.triangles)return;let[[top,bottom],[left,right]]=[Math.floor(block/across),
+block%across].map((at,k)=>{let first=(at+tile[k]*(pyramid?.tileBlocks??0))*size;return[Math.floor(first),Math.min(Math.ceil(
+first+size),[rows,columns][k])]});for(let j=top;j<bottom;j+=1)for(let i=left+j*columns;i<right+j*columns;i+=1)strides[i]=
+Math.max(strides[i],step+level)})}),gl.activeTexture(gl.TEXTURE0+UNITS2[3]),gl.bindTexture(gl.TEXTURE_2D,target?.textures[3]??
+null),gl.pixelStorei(gl.UNPACK_ALIGNMENT,1),gl.texImage2D(gl.TEXTURE_2D,0,gl.R8UI,columns,rows,0,gl.RED_INTEGER,gl.UNSIGNED_BYTE,
+strides)}make(width,height){let{target,graphics}=this;if(target&&target.width>=width&&target.height>=height)return target;
+let gl=graphics.context,{key}=this,size={width:Math.max(width,target?.width??0),height:Math.max(height,target?.height??0)};
+this.dispose();let textures=[gl.RGBA32UI,gl.DEPTH_COMPONENT24,gl.RGBA8,0,gl.RGBA16F,gl.RG32F].map(format=>{let texture=graphics.
+counted(gl.createTexture());return gl.bindTexture(gl.TEXTURE_2D,texture),format&&gl.texStorage2D(gl.TEXTURE_2D,1,format,
+size.width,size.height),gl.texParameteri(gl.TEXTURE_2D,gl.TEXTURE_MIN_FILTER,gl.NEAREST),gl.texParameteri(gl.TEXTURE_2D,
+gl.TEXTURE_MAG_FILTER,gl.NEAREST),texture}),[first,second]=[gl.COLOR_ATTACHMENT0,gl.COLOR_ATTACHMENT1],[places,depths,colours,
+,below,sums]=textures,frames=[[[first,places],[gl.DEPTH_ATTACHMENT,depths]],[[first,below],[second,sums]],[[first,colours]]].
+map(attached=>{let frame=graphics.counted(gl.createFramebuffer());gl.bindFramebuffer(gl.FRAMEBUFFER,frame);for(let[point,
+texture]of attached)gl.framebufferTexture2D(gl.FRAMEBUFFER,point,gl.TEXTURE_2D,texture,0);return gl.drawBuffers(attached.
+map(([point])=>point).filter(point=>point!==gl.DEPTH_ATTACHMENT)),frame});return this.key=key,this.target={frames,textures,
+...size}}bind(){let gl=this.graphics.context;UNITS2.forEach((unit3,n)=>{gl.activeTexture(gl.TEXTURE0+unit3),gl.bindTexture(
+gl.TEXTURE_2D,this.target?.textures[n]??null)}),gl.activeTexture(gl.TEXTURE0+SAMPLERS.length)}};function invert(out,a){var aa=a[0],ab=a[1],ac=a[2],ad=a[3],atx=a[4],aty=a[5],det=aa*ad-ab*ac;return det?(det=1/det,out[0]=
 ad*det,out[1]=-ab*det,out[2]=-ac*det,out[3]=aa*det,out[4]=(ac*aty-ad*atx)*det,out[5]=(ab*atx-aa*aty)*det,out):null}function determinant(a){
 return a[0]*a[3]-a[1]*a[2]}function multiply(out,a,b){var a0=a[0],a1=a[1],a2=a[2],a3=a[3],a4=a[4],a5=a[5],b0=b[0],b1=b[1],
 b2=b[2],b3=b[3],b4=b[4],b5=b[5];return out[0]=a0*b0+a2*b1,out[1]=a1*b0+a3*b1,out[2]=a0*b2+a2*b3,out[3]=a1*b2+a3*b3,out[4]=
@@ -983,45 +986,44 @@ samples,draft),...rays(layer.header.geometry,camera,view.anchor,width,height)});
 program.warm=!0;let started=performance.now();places.sum(program,top,rows,valuesOf);let spent=performance.now()-started;
 return program.price=learnedPrice(program.price,spent,width*rows,samples,this.factor(samples)),spent}isDraft(height,samples){
 return samples!==this.viewer.settings.samples||height!==this.canvas.height}colour(places,shown,samples){let{scene}=this.
-content,{camera}=this.viewer;if(!scene||!camera)return;let{width,height}=places,view=this.viewer.view(shown,this.density(
-height)),draft=this.isDraft(height,samples),valuesOf=layer=>this.values(layer,scene,camera,view,samples,draft),{u_grain:grain}=valuesOf(
-scene),{header}=scene,blocks=isEven(header,this.viewer.settings)?evenBlocks(header.constants.even,Number(grain),width,height):
-null;places.colour(blocks,valuesOf)}show(shown,smooth,samples){let{places}=this.content;if(!places)return;this.colour(places,
-shown,samples);let{width,height}=places,{canvas}=this.graphics;canvas.width<width&&(canvas.width=width),canvas.height<height&&
-(canvas.height=height);let most=smooth?SMOOTH_ROWS:height;for(let bottom=0;bottom<height;bottom+=most)this.render(shown,
-bottom,Math.min(most,height-bottom),smooth)}render(shown,bottom,rows,smooth){let{graphics,viewer}=this,{camera}=viewer,{
-scene,places}=this.content;if(!camera||!scene||!places)return;let gl=graphics.context,{width,height}=places,view=viewer.
-view(shown,this.density(height));smooth?graphics.bindSmooth(width,rows):gl.bindFramebuffer(gl.FRAMEBUFFER,null),gl.viewport(
-0,-bottom,width,height),gl.enable(gl.SCISSOR_TEST),gl.scissor(0,0,width,rows),gl.enable(gl.DEPTH_TEST),gl.depthFunc(gl.LESS),
-gl.disable(gl.BLEND),gl.disable(gl.CULL_FACE);let[r,g,b]=scene.header.background??[1,1,1];gl.clearColor(r,g,b,viewer.isClear?
-0:1),gl.clear(gl.COLOR_BUFFER_BIT|gl.DEPTH_BUFFER_BIT);let around2={camera,anchor:view.anchor,width,height,ratio:viewer.
-ratio};scene.earth.drawGround(around2);let{bodies}=scene;bodies.draw(around2,"opaque"),bodies.seeThrough(()=>{if(!smooth)
-return places.show(scene.programs("surface"));let matrix=projection(scene.header.geometry,camera,view.anchor);places.triangles(
-scene.programs("smooth"),matrix,view.anchor,{u_bottom:bottom})}),this.drawArrows(shown,view,width,height),bodies.draw(around2,
-"clear"),scene.marks.draw({...around2,ratio:view.density},viewer.settings,shown),smooth&&graphics.copySmooth(width,rows),
-this.copy(width,height,bottom,rows)}drawArrows(shown,view,width,height){let{camera,settings}=this.viewer,{scene}=this.content;
-if(!scene||!camera||!hasArrows(scene.header,settings))return;let seen={...camera.sight(height/view.density),planes:camera.
-planes},draft=height!==this.canvas.height,layers=this.layers.map(layer=>layer.scene);for(let[layer,placed]of scene.arrows.
-share(seen,settings,layers)){let{arrows,header}=layer,program=arrows.program(settings,isNear(header,settings,view));if(!program||
-!placed.length)continue;layer.bindTextures(shown[0],shown[1]);let painted=layer.scalarParts(shown[0],shown[1]),values=this.
-values(layer,scene,camera,view,Number(settings.samples),draft);arrows.draw(program,placed,painted,view.anchor,{...values,
-u_picture:[width,height]})}}values({header},{bodies},camera,view,samples,draft){let{settings}=this.viewer,{columns,rows}=header.
-geometry,plain=header.scalars.name!==null&&hasArrows(header,settings)&&settings.arrow_color==="scalars";return{...uniforms(
-header,{...settings,samples},view),...draft?draftUniforms(settings,samples,view.density):{},u_matrix:projection(header.geometry,
-camera,view.anchor),u_mapped:header.scalars.name!==null&&!plain,u_plain:plain,u_flat:!!header.scalars.flat,u_padding:[columns.
-before,rows.before],u_colour:header.colour,u_lit:header.lighting,u_ground:header.background??[1,1,1],u_opacity:bodies.areBehind?
-1:header.opacity,u_toEye:toFrame(header.geometry.frame,scale2(camera.axes[2],-1))}}copy(width,height,bottom,rows){let{pen}=this;
-if(!pen)return;let{canvas}=this.graphics,first=canvas.height-rows,[w,scaled]=[this.canvas.width,this.canvas.height/height];
-if(pen.imageSmoothingEnabled=w!==width||scaled!==1,pen.imageSmoothingEnabled){let{coarse,coarsePen}=this;coarse.width=width,
-coarse.height=rows,coarsePen?.drawImage(canvas,0,first,width,rows,0,0,width,rows),[canvas,first]=[coarse,0]}let to=(height-
-bottom-rows)*scaled;pen.clearRect(0,to,w,rows*scaled),pen.drawImage(canvas,0,first,width,rows,0,to,w,rows*scaled)}},GREATEST_GROWTH=4,
-LEAST_GROWTH=.3,ROUNDING3=1e-6,product=(a,b)=>multiply([0,0,0,0,0,0],a,b),inverse=a=>invert([0,0,0,0,0,0],a);function reused(before,now,width,height){
-let[w,h]=[width/2,height/2],toPixels=m=>product([w,0,0,-h,w,h],[m[0],m[1],m[4],m[5],m[12],m[13]]),matrix=product(toPixels(
-now),inverse(toPixels(before))),area=Math.abs(determinant(matrix));if(!(area>LEAST_GROWTH**2&&area<GREATEST_GROWTH**2))return null;
-let[a,b,c,d,e,f]=inverse(matrix),isInside=([x,y])=>Math.abs((a*x+c*y+e)/w-1)<1+ROUNDING3&&Math.abs((b*x+d*y+f)/h-1)<1+ROUNDING3,
-covers=[[0,0],[width,0],[0,height],[width,height]].every(isInside),[xx,xy,yx,yy]=matrix,shifts=Math.abs(xx-1)+Math.abs(yy-
-1)+Math.abs(xy)+Math.abs(yx)<ROUNDING3;if(shifts)for(let n of[4,5])matrix[n]=Math.round(matrix[n]);return{matrix,covers,
-shifts}}var CORNERS=4,ArrowSeeds=class{surface;limits;sums;whole=[[]];last=null;constructor(surface,limits){this.surface=surface,
+content,{camera}=this.viewer;if(!scene||!camera)return;let{height}=places,view=this.viewer.view(shown,this.density(height)),
+draft=this.isDraft(height,samples),valuesOf=layer=>this.values(layer,scene,camera,view,samples,draft),grain=isEven(scene.
+header,this.viewer.settings)?Number(valuesOf(scene).u_grain):null;places.colour(grain,valuesOf)}show(shown,smooth,samples){
+let{places}=this.content;if(!places)return;this.colour(places,shown,samples);let{width,height}=places,{canvas}=this.graphics;
+canvas.width<width&&(canvas.width=width),canvas.height<height&&(canvas.height=height);let most=smooth?SMOOTH_ROWS:height;
+for(let bottom=0;bottom<height;bottom+=most)this.render(shown,bottom,Math.min(most,height-bottom),smooth)}render(shown,bottom,rows,smooth){
+let{graphics,viewer}=this,{camera}=viewer,{scene,places}=this.content;if(!camera||!scene||!places)return;let gl=graphics.
+context,{width,height}=places,view=viewer.view(shown,this.density(height));smooth?graphics.bindSmooth(width,rows):gl.bindFramebuffer(
+gl.FRAMEBUFFER,null),gl.viewport(0,-bottom,width,height),gl.enable(gl.SCISSOR_TEST),gl.scissor(0,0,width,rows),gl.enable(
+gl.DEPTH_TEST),gl.depthFunc(gl.LESS),gl.disable(gl.BLEND),gl.disable(gl.CULL_FACE);let[r,g,b]=scene.header.background??[
+1,1,1];gl.clearColor(r,g,b,viewer.isClear?0:1),gl.clear(gl.COLOR_BUFFER_BIT|gl.DEPTH_BUFFER_BIT);let around2={camera,anchor:view.
+anchor,width,height,ratio:viewer.ratio};scene.earth.drawGround(around2);let{bodies}=scene;bodies.draw(around2,"opaque"),
+bodies.seeThrough(()=>{if(!smooth)return places.show(scene.programs("surface"));let matrix=projection(scene.header.geometry,
+camera,view.anchor);places.triangles(scene.programs("smooth"),matrix,view.anchor,{u_bottom:bottom})}),this.drawArrows(shown,
+view,width,height),bodies.draw(around2,"clear"),scene.marks.draw({...around2,ratio:view.density},viewer.settings,shown),
+smooth&&graphics.copySmooth(width,rows),this.copy(width,height,bottom,rows)}drawArrows(shown,view,width,height){let{camera,
+settings}=this.viewer,{scene}=this.content;if(!scene||!camera||!hasArrows(scene.header,settings))return;let seen={...camera.
+sight(height/view.density),planes:camera.planes},draft=height!==this.canvas.height,layers=this.layers.map(layer=>layer.scene);
+for(let[layer,placed]of scene.arrows.share(seen,settings,layers)){let{arrows,header}=layer,program=arrows.program(settings,
+isNear(header,settings,view));if(!program||!placed.length)continue;layer.bindTextures(shown[0],shown[1]);let painted=layer.
+scalarParts(shown[0],shown[1]),values=this.values(layer,scene,camera,view,Number(settings.samples),draft);arrows.draw(program,
+placed,painted,view.anchor,{...values,u_picture:[width,height]})}}values({header},{bodies},camera,view,samples,draft){let{
+settings}=this.viewer,{columns,rows}=header.geometry,plain=header.scalars.name!==null&&hasArrows(header,settings)&&settings.
+arrow_color==="scalars";return{...uniforms(header,{...settings,samples},view),...draft?draftUniforms(settings,samples,view.
+density):{},u_matrix:projection(header.geometry,camera,view.anchor),u_mapped:header.scalars.name!==null&&!plain,u_plain:plain,
+u_flat:!!header.scalars.flat,u_padding:[columns.before,rows.before],u_colour:header.colour,u_lit:header.lighting,u_ground:header.
+background??[1,1,1],u_opacity:bodies.areBehind?1:header.opacity,u_toEye:toFrame(header.geometry.frame,scale2(camera.axes[2],
+-1))}}copy(width,height,bottom,rows){let{pen}=this;if(!pen)return;let{canvas}=this.graphics,first=canvas.height-rows,[w,
+scaled]=[this.canvas.width,this.canvas.height/height];if(pen.imageSmoothingEnabled=w!==width||scaled!==1,pen.imageSmoothingEnabled){
+let{coarse,coarsePen}=this;coarse.width=width,coarse.height=rows,coarsePen?.drawImage(canvas,0,first,width,rows,0,0,width,
+rows),[canvas,first]=[coarse,0]}let to=(height-bottom-rows)*scaled;pen.clearRect(0,to,w,rows*scaled),pen.drawImage(canvas,
+0,first,width,rows,0,to,w,rows*scaled)}},GREATEST_GROWTH=4,LEAST_GROWTH=.3,ROUNDING3=1e-6,product=(a,b)=>multiply([0,0,0,
+0,0,0],a,b),inverse=a=>invert([0,0,0,0,0,0],a);function reused(before,now,width,height){let[w,h]=[width/2,height/2],toPixels=m=>product(
+[w,0,0,-h,w,h],[m[0],m[1],m[4],m[5],m[12],m[13]]),matrix=product(toPixels(now),inverse(toPixels(before))),area=Math.abs(
+determinant(matrix));if(!(area>LEAST_GROWTH**2&&area<GREATEST_GROWTH**2))return null;let[a,b,c,d,e,f]=inverse(matrix),isInside=([
+x,y])=>Math.abs((a*x+c*y+e)/w-1)<1+ROUNDING3&&Math.abs((b*x+d*y+f)/h-1)<1+ROUNDING3,covers=[[0,0],[width,0],[0,height],[
+width,height]].every(isInside),[xx,xy,yx,yy]=matrix,shifts=Math.abs(xx-1)+Math.abs(yy-1)+Math.abs(xy)+Math.abs(yx)<ROUNDING3;
+if(shifts)for(let n of[4,5])matrix[n]=Math.round(matrix[n]);return{matrix,covers,shifts}}var CORNERS=4,ArrowSeeds=class{surface;limits;sums;whole=[[]];last=null;constructor(surface,limits){this.surface=surface,
 this.limits=limits;let sum=0;this.sums=Float64Array.from({length:surface.corners.length/CORNERS},(_,cell)=>sum+=this.area(
 wholeCell(cell)))}seen(view,spacing){return(!this.last||!this.covers(this.last.wanted,[view,spacing]))&&(this.last={wanted:[
 view,spacing],seeds:this.make([view,spacing])}),this.last.seeds}position(cell,place){let{nodes,corners}=this.surface;return between2(

@@ -430,21 +430,22 @@ e[1]),d,Math.max(g,0))];let[b,y]=n.shape,v=(x,w)=>{let[M,A,S]=o.map(x);return T(
 y,y),v(x=>Math.floor(x/y),b)]]}function ci(a,e,t){let{header:r,parts:n}=a,{scalars:s,geometry:o}=r,i=ys(a,t),c=o.triangles?
 Math.floor(t[1]):i[0][0],[l,h,u]=e,m={},p=s.choices.map((f,d)=>({...f,number:d}));for(let f of[s,...p]){let d=a.scalarParts(
 l,h,f),[g,b]=d.map(v=>n.get(v)?.data);if(f.name===null||f.name in m||!g||!b)continue;let y=v=>g[v]+u*(b[v]-g[v]);m[f.name]=
-f.flat?y(c):yt(i,y)}return m}function Ms({sigma:a,radii:e},t,r,n){let s=a*t,o=2**Math.max(Math.floor(Math.log2(Math.SQRT2*s)),0),i=o>1?.25:0,c=(s/o)**
-2-i,[l,h]=[r,n].map(u=>Math.ceil(u/o)+2);return{side:o,columns:l,rows:h,variance:c,reach:Math.ceil(e*Math.sqrt(c))}}var li=Q.
-indexOf("u_means"),wt=class{graphics;targets=[];columns=0;rows=0;constructor(e){this.graphics=e}draw(e,t,r,n,s){let{graphics:o}=this,
-i=o.context,{side:c,columns:l,rows:h,variance:u,reach:m}=r;this.fit(l,h),i.bindVertexArray(null),i.viewport(0,0,l,h);for(let g of[
-i.SCISSOR_TEST,i.DEPTH_TEST,i.BLEND])i.disable(g);let[p,f]=this.targets;o.programs.use(e,{u_pixels:[n,s],u_side:c}),this.
-pass(p);let d={u_blocks:[l,h],u_variance:u,u_reach:m};o.programs.use(t,{...d,u_along:[1,0]}),this.pass(f,p),o.programs.use(
-t,{u_along:[0,1]}),this.pass(p,f),this.bind(p)}dispose(){for(let{frame:e,texture:t}of this.targets)this.graphics.free("F\
-ramebuffer",e),this.graphics.free("Texture",t);this.targets=[],this.columns=this.rows=0}pass(e,t){let r=this.graphics.context;
-t&&this.bind(t),r.bindFramebuffer(r.FRAMEBUFFER,e.frame),r.drawArrays(r.TRIANGLES,0,3)}bind({texture:e}){let t=this.graphics.
-context;t.activeTexture(t.TEXTURE0+li),t.bindTexture(t.TEXTURE_2D,e),t.activeTexture(t.TEXTURE0+Q.length)}fit(e,t){if(this.
-columns>=e&&this.rows>=t)return;let[r,n]=[Math.max(e,this.columns),Math.max(t,this.rows)];this.dispose();let{graphics:s}=this,
-o=s.context;this.targets=[0,1].map(()=>{let i=s.counted(o.createTexture());o.bindTexture(o.TEXTURE_2D,i),o.texStorage2D(
-o.TEXTURE_2D,1,o.R32F,r,n),o.texParameteri(o.TEXTURE_2D,o.TEXTURE_MIN_FILTER,o.NEAREST),o.texParameteri(o.TEXTURE_2D,o.TEXTURE_MAG_FILTER,
-o.NEAREST);let c=s.counted(o.createFramebuffer());return o.bindFramebuffer(o.FRAMEBUFFER,c),o.framebufferTexture2D(o.FRAMEBUFFER,
-o.COLOR_ATTACHMENT0,o.TEXTURE_2D,i,0),{frame:c,texture:i}}),[this.columns,this.rows]=[r,n]}};var hi=3,Es=5;function Ss({shape:a,triangles:e},t,r,n){let[s,o]=t.shape,i=new Int8Array(s*o).fill(e?0:Math.log2(n));for(let c=0;c<
+f.flat?y(c):yt(i,y)}return m}function Ms({sigma:a,radii:e},t,[r,n,s,o]){let i=a*t,c=2**Math.max(Math.floor(Math.log2(Math.SQRT2*i)),0),l=c>1?.25:0,h=(i/
+c)**2-l,[u,m]=[r,n].map(g=>Math.floor(g/c)*c),[p,f]=[s-u,o-m].map(g=>Math.ceil(g/c)+2),d=Math.ceil(e*Math.sqrt(h));return{
+side:c,first:[u,m],end:[s,o],columns:p,rows:f,variance:h,reach:d}}var li=Q.indexOf("u_means"),wt=class{graphics;targets=[];columns=0;rows=0;constructor(e){
+this.graphics=e}draw(e,t,r){let{graphics:n}=this,s=n.context,{side:o,first:i,end:c,columns:l,rows:h,variance:u,reach:m}=r;
+this.fit(l,h),s.bindVertexArray(null),s.viewport(0,0,l,h);for(let g of[s.SCISSOR_TEST,s.DEPTH_TEST,s.BLEND])s.disable(g);
+let[p,f]=this.targets;n.programs.use(e,{u_first:i,u_end:c,u_side:o}),this.pass(p);let d={u_blocks:[l,h],u_variance:u,u_reach:m};
+n.programs.use(t,{...d,u_along:[1,0]}),this.pass(f,p),n.programs.use(t,{u_along:[0,1]}),this.pass(p,f),this.bind(p)}dispose(){
+for(let{frame:e,texture:t}of this.targets)this.graphics.free("Framebuffer",e),this.graphics.free("Texture",t);this.targets=
+[],this.columns=this.rows=0}pass(e,t){let r=this.graphics.context;t&&this.bind(t),r.bindFramebuffer(r.FRAMEBUFFER,e.frame),
+r.drawArrays(r.TRIANGLES,0,3)}bind({texture:e}){let t=this.graphics.context;t.activeTexture(t.TEXTURE0+li),t.bindTexture(
+t.TEXTURE_2D,e),t.activeTexture(t.TEXTURE0+Q.length)}fit(e,t){if(this.columns>=e&&this.rows>=t)return;let[r,n]=[Math.max(
+e,this.columns),Math.max(t,this.rows)];this.dispose();let{graphics:s}=this,o=s.context;this.targets=[0,1].map(()=>{let i=s.
+counted(o.createTexture());o.bindTexture(o.TEXTURE_2D,i),o.texStorage2D(o.TEXTURE_2D,1,o.R32F,r,n),o.texParameteri(o.TEXTURE_2D,
+o.TEXTURE_MIN_FILTER,o.NEAREST),o.texParameteri(o.TEXTURE_2D,o.TEXTURE_MAG_FILTER,o.NEAREST);let c=s.counted(o.createFramebuffer());
+return o.bindFramebuffer(o.FRAMEBUFFER,c),o.framebufferTexture2D(o.FRAMEBUFFER,o.COLOR_ATTACHMENT0,o.TEXTURE_2D,i,0),{frame:c,
+texture:i}}),[this.columns,this.rows]=[r,n]}};var hi=3,Es=5;function Ss({shape:a,triangles:e},t,r,n){let[s,o]=t.shape,i=new Int8Array(s*o).fill(e?0:Math.log2(n));for(let c=0;c<
 r.length;c+=3){if(Number.isFinite(r[c]))continue;let[l,h]=[Math.floor(c/3/a[1]),c/3%a[1]];for(let u of[Math.floor((l-1)/
 n),Math.floor(l/n)])for(let m of[Math.floor((h-1)/n),Math.floor(h/n)])u>=0&&u<s&&m>=0&&m<o&&(i[u*o+m]=0)}return i}function Ts({
 shape:a,data:e},t,r,n,s){let[o,i]=a,c={...t.sight(r),planes:t.planes},l=new Int8Array(o*i).fill(-1),h=[1,1,-1,-1];for(let u=0;u<
@@ -472,20 +473,23 @@ let _=f.blocks.shape[1];y.forEach((L,C)=>{if(L<0||M)return;let I=[C%_,Math.floor
 0,6*J*ae)})})}sum(e,t,r,n){let{graphics:s,width:o,height:i,target:c}=this,l=s.context,h=i-t-r;l.bindFramebuffer(l.FRAMEBUFFER,
 c?.frames[1]??null),l.enable(l.SCISSOR_TEST),l.scissor(0,h,o,r),l.clearBufferfv(l.COLOR,1,[0,0,0,0]),this.pixels(e,h,r,n),
 l.readPixels(0,0,1,1,l.RGBA,l.FLOAT,new Float32Array(4)),l.bindFramebuffer(l.FRAMEBUFFER,null)}colour(e,t){let{graphics:r,
-layers:n,means:s,width:o,height:i,target:c}=this,l=r.context,[{scene:h}]=n;this.bind(),e&&s.draw(h.programs("blocks"),h.
-programs("blur"),e,o,i),l.bindFramebuffer(l.FRAMEBUFFER,c?.frames[2]??null);let u=e?.side??1;this.pixels(h.programs("col\
-our"),0,i,m=>({...t(m),u_side:u})),l.bindFramebuffer(l.FRAMEBUFFER,null)}pixels(e,t,r,n){let{graphics:s,width:o,height:i}=this,
-c=s.context;c.viewport(0,0,o,i),c.enable(c.SCISSOR_TEST),c.disable(c.DEPTH_TEST),c.disable(c.BLEND),c.bindVertexArray(null),
-this.layers.forEach(({scene:l},h)=>{let[u,m,p,f]=this.seen[h].box.map((x,w)=>(.5+.5*x)*(w%2?i:o)),[d,g]=[Math.max(Math.floor(
-u),0),Math.max(Math.floor(m),t)],[b,y]=[Math.min(Math.ceil(p),o)-d,Math.min(Math.ceil(f),t+r)-g];if(b<=0||y<=0)return;c.
-scissor(d,g,b,y);let v=n(l);this.bind(),s.programs.use(e,{...v,u_layer:h+1}),c.drawArrays(c.TRIANGLES,0,3)})}show(e){let t=this.
-graphics.context;this.bind(),t.bindVertexArray(null),this.graphics.programs.use(e,{u_bottom:0}),t.drawArrays(t.TRIANGLES,
-0,3)}at(e,t){let{graphics:r,target:n,layers:s}=this,o=r.context,[i,c]=[(.5+.5*e)*this.width,(.5+.5*t)*this.height],l=T(Math.
-floor(i-.5),0,this.width-2),h=T(Math.floor(c-.5),0,this.height-2),u=new Uint32Array(16);o.bindFramebuffer(o.FRAMEBUFFER,
-n?.frames[0]??null),o.readPixels(l,h,2,2,o.RGBA_INTEGER,o.UNSIGNED_INT,u),o.bindFramebuffer(o.FRAMEBUFFER,null);let m=+(i>=
-l+1)+2*+(c>=h+1),p=4*([m,m^1,m^2,m^3].find(g=>u[4*g+3])??m),[f,d]=new Float32Array(u.buffer,4*p,2);return u[p+3]?{layer:s[u[p+
-3]-1],coordinate:[f,d],triangle:u[p+2]}:null}dispose(){let{graphics:e,target:t}=this;for(let r of t?.textures??[])e.free(
-"Texture",r);for(let r of t?.frames??[])e.free("Framebuffer",r);this.means.dispose(),this.target=null,this.key=""}sendStrides(){
+layers:n,means:s,height:o,target:i}=this,c=r.context,[{scene:l}]=n;this.bind();let h=e===null?null:Ms(l.header.constants.
+even,e,this.box);h&&s.draw(l.programs("blocks"),l.programs("blur"),h),c.bindFramebuffer(c.FRAMEBUFFER,i?.frames[2]??null);
+let u={u_first:h?.first??[0,0],u_side:h?.side??1};this.pixels(l.programs("colour"),0,o,m=>({...t(m),...u})),c.bindFramebuffer(
+c.FRAMEBUFFER,null)}boxOf({box:e}){let{width:t,height:r}=this,[n,s,o,i]=e.map((l,h)=>(.5+.5*l)*(h%2?r:t));return[...[n,s].
+map(l=>Math.max(Math.floor(l),0)),Math.min(Math.ceil(o),t),Math.min(Math.ceil(i),r)]}get box(){let e=this.seen.map(t=>this.
+boxOf(t)).filter(([t,r,n,s])=>t<n&&r<s);return e.length?[0,1,2,3].map(t=>{let r=e.map(n=>n[t]);return t<2?Math.min(...r):
+Math.max(...r)}):[0,0,1,1]}pixels(e,t,r,n){let{graphics:s,width:o,height:i}=this,c=s.context;c.viewport(0,0,o,i),c.enable(
+c.SCISSOR_TEST),c.disable(c.DEPTH_TEST),c.disable(c.BLEND),c.bindVertexArray(null),this.layers.forEach(({scene:l},h)=>{let[
+u,m,p,f]=this.boxOf(this.seen[h]),[d,g]=[u,Math.max(m,t)],[b,y]=[p-d,Math.min(f,t+r)-g];if(b<=0||y<=0)return;c.scissor(d,
+g,b,y);let v=n(l);this.bind(),s.programs.use(e,{...v,u_layer:h+1}),c.drawArrays(c.TRIANGLES,0,3)})}show(e){let t=this.graphics.
+context;this.bind(),t.bindVertexArray(null),this.graphics.programs.use(e,{u_bottom:0}),t.drawArrays(t.TRIANGLES,0,3)}at(e,t){
+let{graphics:r,target:n,layers:s}=this,o=r.context,[i,c]=[(.5+.5*e)*this.width,(.5+.5*t)*this.height],l=T(Math.floor(i-.5),
+0,this.width-2),h=T(Math.floor(c-.5),0,this.height-2),u=new Uint32Array(16);o.bindFramebuffer(o.FRAMEBUFFER,n?.frames[0]??
+null),o.readPixels(l,h,2,2,o.RGBA_INTEGER,o.UNSIGNED_INT,u),o.bindFramebuffer(o.FRAMEBUFFER,null);let m=+(i>=l+1)+2*+(c>=
+h+1),p=4*([m,m^1,m^2,m^3].find(g=>u[4*g+3])??m),[f,d]=new Float32Array(u.buffer,4*p,2);return u[p+3]?{layer:s[u[p+3]-1],
+coordinate:[f,d],triangle:u[p+2]}:null}dispose(){let{graphics:e,target:t}=this;for(let r of t?.textures??[])e.free("Text\
+ure",r);for(let r of t?.frames??[])e.free("Framebuffer",r);this.means.dispose(),this.target=null,this.key=""}sendStrides(){
 let{layers:e,seen:t,target:r}=this,n=this.graphics.context,[{scene:s}]=e,{pyramid:o,geometry:i}=s.header,c=i.triangles?[
 1,1]:o?.blocks[0]??s.blocks.shape;this.squares=Math.max(Math.ceil(Math.log2(Math.max(...c)/mi)),0);let l=2**-this.squares,
 [h,u]=c.map(p=>Math.ceil(p*l)),m=new Uint8Array(h*u);e.forEach(({scene:p,key:[f,...d]},g)=>{let b=p.blocks.shape[1],y=2**
@@ -494,7 +498,7 @@ f*l;t[g].levels.forEach((v,x)=>{if(v<0||i.triangles)return;let[[w,M],[A,S]]=[Mat
 _*u;L+=1)m[L]=Math.max(m[L],f+v)})}),n.activeTexture(n.TEXTURE0+As[3]),n.bindTexture(n.TEXTURE_2D,r?.textures[3]??null),
 n.pixelStorei(n.UNPACK_ALIGNMENT,1),n.texImage2D(n.TEXTURE_2D,0,n.R8UI,u,h,0,n.RED_INTEGER,n.UNSIGNED_BYTE,m)}make(e,t){
 let{target:r,graphics:n}=this;if(r&&r.width>=e&&r.height>=t)return r;let s=n.context,{key:o}=this,i={width:Math.max(e,r?.
-width??0),height:Math.max(t,r?.height??0)};this.dispose();let c=[s.RGBA32UI,s.DEPTH_COMPONENT24,s.RGBA8,0,s.RGBA16F,s.RG16F].
+width??0),height:Math.max(t,r?.height??0)};this.dispose();let c=[s.RGBA32UI,s.DEPTH_COMPONENT24,s.RGBA8,0,s.RGBA16F,s.RG32F].
 map(b=>{let y=n.counted(s.createTexture());return s.bindTexture(s.TEXTURE_2D,y),b&&s.texStorage2D(s.TEXTURE_2D,1,b,i.width,
 i.height),s.texParameteri(s.TEXTURE_2D,s.TEXTURE_MIN_FILTER,s.NEAREST),s.texParameteri(s.TEXTURE_2D,s.TEXTURE_MAG_FILTER,
 s.NEAREST),y}),[l,h]=[s.COLOR_ATTACHMENT0,s.COLOR_ATTACHMENT1],[u,m,p,,f,d]=c,g=[[[l,u],[s.DEPTH_ATTACHMENT,m]],[[l,f],[
@@ -544,34 +548,33 @@ width:t,height:r})}density(e){return this.viewer.ratio*e/this.canvas.height}sum(
 h,s),p=g=>(g.bindNodes(u.anchor),g.bindTextures(t[0],t[1]),{...this.values(g,i,c,u,s,m),...xn(g.header.geometry,c,u.anchor,
 l,h)});e.warm||o.sum(e,r,1,p),e.warm=!0;let f=performance.now();o.sum(e,r,n,p);let d=performance.now()-f;return e.price=
 Rn(e.price,d,l*n,s,this.factor(s)),d}isDraft(e,t){return t!==this.viewer.settings.samples||e!==this.canvas.height}colour(e,t,r){
-let{scene:n}=this.content,{camera:s}=this.viewer;if(!n||!s)return;let{width:o,height:i}=e,c=this.viewer.view(t,this.density(
-i)),l=this.isDraft(i,r),h=d=>this.values(d,n,s,c,r,l),{u_grain:u}=h(n),{header:m}=n,f=yr(m,this.viewer.settings)?Ms(m.constants.
-even,Number(u),o,i):null;e.colour(f,h)}show(e,t,r){let{places:n}=this.content;if(!n)return;this.colour(n,e,r);let{width:s,
-height:o}=n,{canvas:i}=this.graphics;i.width<s&&(i.width=s),i.height<o&&(i.height=o);let c=t?gi:o;for(let l=0;l<o;l+=c)this.
-render(e,l,Math.min(c,o-l),t)}render(e,t,r,n){let{graphics:s,viewer:o}=this,{camera:i}=o,{scene:c,places:l}=this.content;
-if(!i||!c||!l)return;let h=s.context,{width:u,height:m}=l,p=o.view(e,this.density(m));n?s.bindSmooth(u,r):h.bindFramebuffer(
-h.FRAMEBUFFER,null),h.viewport(0,-t,u,m),h.enable(h.SCISSOR_TEST),h.scissor(0,0,u,r),h.enable(h.DEPTH_TEST),h.depthFunc(
-h.LESS),h.disable(h.BLEND),h.disable(h.CULL_FACE);let[f,d,g]=c.header.background??[1,1,1];h.clearColor(f,d,g,o.isClear?0:
-1),h.clear(h.COLOR_BUFFER_BIT|h.DEPTH_BUFFER_BIT);let b={camera:i,anchor:p.anchor,width:u,height:m,ratio:o.ratio};c.earth.
-drawGround(b);let{bodies:y}=c;y.draw(b,"opaque"),y.seeThrough(()=>{if(!n)return l.show(c.programs("surface"));let v=z(c.
-header.geometry,i,p.anchor);l.triangles(c.programs("smooth"),v,p.anchor,{u_bottom:t})}),this.drawArrows(e,p,u,m),y.draw(
-b,"clear"),c.marks.draw({...b,ratio:p.density},o.settings,e),n&&s.copySmooth(u,r),this.copy(u,m,t,r)}drawArrows(e,t,r,n){
-let{camera:s,settings:o}=this.viewer,{scene:i}=this.content;if(!i||!s||!ke(i.header,o))return;let c={...s.sight(n/t.density),
-planes:s.planes},l=n!==this.canvas.height,h=this.layers.map(u=>u.scene);for(let[u,m]of i.arrows.share(c,o,h)){let{arrows:p,
-header:f}=u,d=p.program(o,ht(f,o,t));if(!d||!m.length)continue;u.bindTextures(e[0],e[1]);let g=u.scalarParts(e[0],e[1]),
-b=this.values(u,i,s,t,Number(o.samples),l);p.draw(d,m,g,t.anchor,{...b,u_picture:[r,n]})}}values({header:e},{bodies:t},r,n,s,o){
-let{settings:i}=this.viewer,{columns:c,rows:l}=e.geometry,h=e.scalars.name!==null&&ke(e,i)&&i.arrow_color==="scalars";return{
-...Un(e,{...i,samples:s},n),...o?Ln(i,s,n.density):{},u_matrix:z(e.geometry,r,n.anchor),u_mapped:e.scalars.name!==null&&
-!h,u_plain:h,u_flat:!!e.scalars.flat,u_padding:[c.before,l.before],u_colour:e.colour,u_lit:e.lighting,u_ground:e.background??
-[1,1,1],u_opacity:t.areBehind?1:e.opacity,u_toEye:O(e.geometry.frame,k(r.axes[2],-1))}}copy(e,t,r,n){let{pen:s}=this;if(!s)
-return;let{canvas:o}=this.graphics,i=o.height-n,[c,l]=[this.canvas.width,this.canvas.height/t];if(s.imageSmoothingEnabled=
-c!==e||l!==1,s.imageSmoothingEnabled){let{coarse:u,coarsePen:m}=this;u.width=e,u.height=n,m?.drawImage(o,0,i,e,n,0,0,e,n),
-[o,i]=[u,0]}let h=(t-r-n)*l;s.clearRect(0,h,c,n*l),s.drawImage(o,0,i,e,n,0,h,c,n*l)}},yi=4,vi=.3,Pr=1e-6,ks=(a,e)=>Rs([0,
-0,0,0,0,0],a,e),Os=a=>_s([0,0,0,0,0,0],a);function xi(a,e,t,r){let[n,s]=[t/2,r/2],o=M=>ks([n,0,0,-s,n,s],[M[0],M[1],M[4],
-M[5],M[12],M[13]]),i=ks(o(e),Os(o(a))),c=Math.abs(Ps(i));if(!(c>vi**2&&c<yi**2))return null;let[l,h,u,m,p,f]=Os(i),d=([M,
-A])=>Math.abs((l*M+u*A+p)/n-1)<1+Pr&&Math.abs((h*M+m*A+f)/s-1)<1+Pr,g=[[0,0],[t,0],[0,r],[t,r]].every(d),[b,y,v,x]=i,w=Math.
-abs(b-1)+Math.abs(x-1)+Math.abs(y)+Math.abs(v)<Pr;if(w)for(let M of[4,5])i[M]=Math.round(i[M]);return{matrix:i,covers:g,
-shifts:w}}var _t=4,Pt=class{surface;limits;sums;whole=[[]];last=null;constructor(e,t){this.surface=e,this.limits=t;let r=0;this.sums=
+let{scene:n}=this.content,{camera:s}=this.viewer;if(!n||!s)return;let{height:o}=e,i=this.viewer.view(t,this.density(o)),
+c=this.isDraft(o,r),l=u=>this.values(u,n,s,i,r,c),h=yr(n.header,this.viewer.settings)?Number(l(n).u_grain):null;e.colour(
+h,l)}show(e,t,r){let{places:n}=this.content;if(!n)return;this.colour(n,e,r);let{width:s,height:o}=n,{canvas:i}=this.graphics;
+i.width<s&&(i.width=s),i.height<o&&(i.height=o);let c=t?gi:o;for(let l=0;l<o;l+=c)this.render(e,l,Math.min(c,o-l),t)}render(e,t,r,n){
+let{graphics:s,viewer:o}=this,{camera:i}=o,{scene:c,places:l}=this.content;if(!i||!c||!l)return;let h=s.context,{width:u,
+height:m}=l,p=o.view(e,this.density(m));n?s.bindSmooth(u,r):h.bindFramebuffer(h.FRAMEBUFFER,null),h.viewport(0,-t,u,m),h.
+enable(h.SCISSOR_TEST),h.scissor(0,0,u,r),h.enable(h.DEPTH_TEST),h.depthFunc(h.LESS),h.disable(h.BLEND),h.disable(h.CULL_FACE);
+let[f,d,g]=c.header.background??[1,1,1];h.clearColor(f,d,g,o.isClear?0:1),h.clear(h.COLOR_BUFFER_BIT|h.DEPTH_BUFFER_BIT);
+let b={camera:i,anchor:p.anchor,width:u,height:m,ratio:o.ratio};c.earth.drawGround(b);let{bodies:y}=c;y.draw(b,"opaque"),
+y.seeThrough(()=>{if(!n)return l.show(c.programs("surface"));let v=z(c.header.geometry,i,p.anchor);l.triangles(c.programs(
+"smooth"),v,p.anchor,{u_bottom:t})}),this.drawArrows(e,p,u,m),y.draw(b,"clear"),c.marks.draw({...b,ratio:p.density},o.settings,
+e),n&&s.copySmooth(u,r),this.copy(u,m,t,r)}drawArrows(e,t,r,n){let{camera:s,settings:o}=this.viewer,{scene:i}=this.content;
+if(!i||!s||!ke(i.header,o))return;let c={...s.sight(n/t.density),planes:s.planes},l=n!==this.canvas.height,h=this.layers.
+map(u=>u.scene);for(let[u,m]of i.arrows.share(c,o,h)){let{arrows:p,header:f}=u,d=p.program(o,ht(f,o,t));if(!d||!m.length)
+continue;u.bindTextures(e[0],e[1]);let g=u.scalarParts(e[0],e[1]),b=this.values(u,i,s,t,Number(o.samples),l);p.draw(d,m,
+g,t.anchor,{...b,u_picture:[r,n]})}}values({header:e},{bodies:t},r,n,s,o){let{settings:i}=this.viewer,{columns:c,rows:l}=e.
+geometry,h=e.scalars.name!==null&&ke(e,i)&&i.arrow_color==="scalars";return{...Un(e,{...i,samples:s},n),...o?Ln(i,s,n.density):
+{},u_matrix:z(e.geometry,r,n.anchor),u_mapped:e.scalars.name!==null&&!h,u_plain:h,u_flat:!!e.scalars.flat,u_padding:[c.before,
+l.before],u_colour:e.colour,u_lit:e.lighting,u_ground:e.background??[1,1,1],u_opacity:t.areBehind?1:e.opacity,u_toEye:O(
+e.geometry.frame,k(r.axes[2],-1))}}copy(e,t,r,n){let{pen:s}=this;if(!s)return;let{canvas:o}=this.graphics,i=o.height-n,[
+c,l]=[this.canvas.width,this.canvas.height/t];if(s.imageSmoothingEnabled=c!==e||l!==1,s.imageSmoothingEnabled){let{coarse:u,
+coarsePen:m}=this;u.width=e,u.height=n,m?.drawImage(o,0,i,e,n,0,0,e,n),[o,i]=[u,0]}let h=(t-r-n)*l;s.clearRect(0,h,c,n*l),
+s.drawImage(o,0,i,e,n,0,h,c,n*l)}},yi=4,vi=.3,Pr=1e-6,ks=(a,e)=>Rs([0,0,0,0,0,0],a,e),Os=a=>_s([0,0,0,0,0,0],a);function xi(a,e,t,r){
+let[n,s]=[t/2,r/2],o=M=>ks([n,0,0,-s,n,s],[M[0],M[1],M[4],M[5],M[12],M[13]]),i=ks(o(e),Os(o(a))),c=Math.abs(Ps(i));if(!(c>
+vi**2&&c<yi**2))return null;let[l,h,u,m,p,f]=Os(i),d=([M,A])=>Math.abs((l*M+u*A+p)/n-1)<1+Pr&&Math.abs((h*M+m*A+f)/s-1)<
+1+Pr,g=[[0,0],[t,0],[0,r],[t,r]].every(d),[b,y,v,x]=i,w=Math.abs(b-1)+Math.abs(x-1)+Math.abs(y)+Math.abs(v)<Pr;if(w)for(let M of[
+4,5])i[M]=Math.round(i[M]);return{matrix:i,covers:g,shifts:w}}var _t=4,Pt=class{surface;limits;sums;whole=[[]];last=null;constructor(e,t){this.surface=e,this.limits=t;let r=0;this.sums=
 Float64Array.from({length:e.corners.length/_t},(n,s)=>r+=this.area(Rr(s)))}seen(e,t){return(!this.last||!this.covers(this.
 last.wanted,[e,t]))&&(this.last={wanted:[e,t],seeds:this.make([e,t])}),this.last.seeds}position(e,t){let{nodes:r,corners:n}=this.
 surface;return Ce(r,n.subarray(_t*e,_t*(e+1)),t,3)}point(e){let{frame:t,center:r}=this.surface.geometry;return R(K(t,e),

@@ -15,19 +15,20 @@ def local_mean(texture: Floats, grain: float) -> Floats:
     Row 0 is at the top, and NaN, off the surface, counts as zero.
     """
     height, width = texture.shape
-    blocks = EvenBlocks.of(grain, (width, height))
+    blocks = EvenBlocks.of(grain, (0, width, 0, height))
     side = blocks.side
-    padded = np.zeros((blocks.rows * side, blocks.columns * side))
+    columns, rows = blocks.size
+    padded = np.zeros((rows * side, columns * side))
     # Blocks begin at the lower left.
     padded[side : side + height, side : side + width] = np.nan_to_num(texture[::-1])
-    means = padded.reshape(blocks.rows, side, blocks.columns, side).mean(axis=(1, 3))
+    means = padded.reshape(rows, side, columns, side).mean(axis=(1, 3))
     offsets = np.arange(-blocks.reach, blocks.reach + 1)
     weights = np.exp(-0.5 * offsets**2 / blocks.variance)
     weights /= weights.sum()
     for axis in (1, 0):
         means = convolve1d(means, weights, axis=axis, mode="constant")
-    rows = _interpolated(means, height, side)
-    return _interpolated(rows.T, width, side).T[::-1]
+    by_row = _interpolated(means, height, side)
+    return _interpolated(by_row.T, width, side).T[::-1]
 
 
 def _interpolated(means: Floats, count: int, side: int) -> Floats:

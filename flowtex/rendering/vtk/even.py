@@ -5,7 +5,7 @@ from __future__ import annotations
 from vtkmodules.vtkRenderingOpenGL2 import vtkOpenGLRenderWindow
 
 from flowtex.rendering.even import EvenBlocks
-from flowtex.rendering.vtk.targets import Rectangle, Target
+from flowtex.rendering.vtk.targets import Box, Rectangle, Target
 
 BLEND = 0x0BE2  #: OpenGL's number of blending.
 DEPTH_TEST = 0x0B71  #: OpenGL's number of the depth test.
@@ -19,6 +19,7 @@ class EvenPass:
     def __init__(self) -> None:
         #: Texture of each pixel before it fades, and the factor by which it does.
         self._texture = Target(2)
+        self._box: Box | None = None
         self._means = Target(1)
         self._blurred = Target(1)
         self._steps = {
@@ -36,56 +37,72 @@ class EvenPass:
         sums.bind()
         sums.frame.AddColorAttachment(1, self._texture.texture)
         sums.frame.ActivateDrawBuffers(2)
+        self._box = None
+
+    def include(self, box: Box) -> None:
+        """Take pixels into account into which sums are drawn."""
+        if self._box is None:
+            self._box = box
+            return
+        left, right, low, high = zip(self._box, box, strict=True)
+        self._box = (min(left), max(right), min(low), max(high))
 
     def draw(self, window: vtkOpenGLRenderWindow, sums: Target, grain: float | None) -> None:
         """Subtract the local mean for a grain in pixels, if any, from the texture in the sums."""
         sums.frame.RemoveColorAttachment(1)
         sums.frame.ActivateDrawBuffer(0)
-        if grain is None:
+        if grain is None or self._box is None:
             return
-        blocks = EvenBlocks.of(grain, sums.size)
+        blocks = EvenBlocks.of(grain, self._box)
         state = window.GetState()
         state.vtkglDisable(DEPTH_TEST)
         self._draw_means(window, blocks)
         sums.bind()
         state.vtkglEnable(BLEND)
         state.vtkglBlendFunc(ONE, ONE)
-        step = self._steps["LAID"]
-        step.use(window)
-        step.program.SetUniformi("u_side", blocks.side)
-        sources = {"u_texture": self._texture, "u_means": self._means}
-        _draw(window, step, sums, sources)
+        step = self._use("LAID", window, blocks)
+        _draw(window, step, sums, {"u_texture": self._texture, "u_means": self._means}, self._box)
         state.vtkglDisable(BLEND)
         state.vtkglEnable(DEPTH_TEST)
 
     def _draw_means(self, window: vtkOpenGLRenderWindow, blocks: EvenBlocks) -> None:
         """Draw the means of blocks, and blur them along rows and columns."""
+        box = (0, blocks.size[0], 0, blocks.size[1])
         for target in (self._means, self._blurred):
-            target.fit(window, (blocks.columns, blocks.rows))
-        step = self._steps["BLOCKS"]
-        step.use(window)
-        step.program.SetUniform2i("u_pixels", self._texture.size)
-        step.program.SetUniformi("u_side", blocks.side)
-        _draw(window, step, self._means, {"u_texture": self._texture})
-        step = self._steps["BLUR"]
-        step.use(window)
-        step.program.SetUniform2i("u_blocks", self._means.size)
+            target.grow(window, blocks.size)
+        step = self._use("BLOCKS", window, blocks)
+        step.program.SetUniform2i("u_end", blocks.end)
+        _draw(window, step, self._means, {"u_texture": self._texture}, box)
+        step = self._use("BLUR", window, blocks)
+        step.program.SetUniform2i("u_blocks", blocks.size)
         step.program.SetUniformi("u_reach", blocks.reach)
         step.program.SetUniformf("u_variance", blocks.variance)
         step.program.SetUniform2i("u_along", (1, 0))
-        _draw(window, step, self._blurred, {"u_means": self._means})
+        _draw(window, step, self._blurred, {"u_means": self._means}, box)
         step.program.SetUniform2i("u_along", (0, 1))
-        _draw(window, step, self._means, {"u_means": self._blurred})
+        _draw(window, step, self._means, {"u_means": self._blurred}, box)
+
+    def _use(self, name: str, window: vtkOpenGLRenderWindow, blocks: EvenBlocks) -> Rectangle:
+        step = self._steps[name]
+        step.use(window)
+        if name != "BLUR":
+            step.program.SetUniform2i("u_first", blocks.first)
+            step.program.SetUniformi("u_side", blocks.side)
+        return step
 
 
 def _draw(
-    window: vtkOpenGLRenderWindow, step: Rectangle, target: Target, sources: dict[str, Target]
+    window: vtkOpenGLRenderWindow,
+    step: Rectangle,
+    target: Target,
+    sources: dict[str, Target],
+    box: Box,
 ) -> None:
-    """Draw all pixels of a target from other targets, by the names of their samplers."""
+    """Draw a box of a target from other targets, by the names of their samplers."""
     target.bind()
     for name, source in sources.items():
         source.texture.Activate()
         step.program.SetUniformi(name, source.texture.GetTextureUnit())
-    step.draw(target, window)
+    step.draw(target, window, box)
     for source in sources.values():
         source.texture.Deactivate()

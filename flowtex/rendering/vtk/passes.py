@@ -264,6 +264,7 @@ class _Part:
         x, y = corner.tolist()
         inside = (left + x, right + x, low + y, high + y)
         depth = self._number / MOST_LAYERS
+        buffers.even.include(inside)
         self._sum.draw(buffers.sums, layer.window, inside, depth)
 
     def _before_places(self, program: vtkShaderProgram | None) -> None:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import TypeAlias
+
 from vtkmodules.util.vtkConstants import VTK_FLOAT
 from vtkmodules.vtkRenderingOpenGL2 import (
     vtkOpenGLFramebufferObject,
@@ -15,6 +17,10 @@ from flowtex.rendering.shaders import shader_text
 
 #: VTK begins shaders with what it writes for these.
 MARKS = "//VTK::System::Dec\n//VTK::Output::Dec\n"
+
+
+#: First and end of columns and rows of pixels.
+Box: TypeAlias = tuple[int, int, int, int]
 
 
 class Target:
@@ -46,6 +52,11 @@ class Target:
             self._depth.SetContext(window)
             self._depth.AllocateDepth(*size, vtkTextureObject.Float32)
             self.frame.AddDepthAttachment(self._depth)
+
+    def grow(self, window: vtkOpenGLRenderWindow, size: tuple[int, int]) -> None:
+        """Have a texture of at least a width and a height."""
+        width, height = self.size
+        self.fit(window, (max(width, size[0]), max(height, size[1])))
 
     def bind(self) -> None:
         """Draw into the texture from now on."""
@@ -87,7 +98,7 @@ class Rectangle:
         self,
         target: Target,
         window: vtkOpenGLRenderWindow,
-        box: tuple[int, int, int, int] | None = None,
+        box: Box | None = None,
         depth: float = 0.0,
     ) -> None:
         """Draw first and end of columns and rows of a target, or all, at a depth from 0 to 1."""
