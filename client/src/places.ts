@@ -147,7 +147,7 @@ export class Places {
     gl.clearBufferfv(gl.COLOR, 1, [0, 0, 0, 0]);
     this.pixels(program, bottom, rows, valuesOf);
     // Reading a pixel waits until everything is drawn.
-    gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.FLOAT, new Float32Array(4));
+    gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(4));
     gl.bindFramebuffer(gl.FRAMEBUFFER, null);
   }
 
@@ -279,7 +279,7 @@ export class Places {
     const { key } = this;
     const size = { width: Math.max(width, target?.width ?? 0), height: Math.max(height, target?.height ?? 0) };
     this.dispose();
-    const textures = [gl.RGBA32UI, gl.DEPTH_COMPONENT24, gl.RGBA8, 0, gl.RGBA16F, gl.RG32F].map((format) => {
+    const textures = [gl.RGBA32UI, gl.DEPTH_COMPONENT24, gl.RGBA8, 0, gl.RGBA8, gl.RGBA16F].map((format) => {
       const texture = graphics.counted(gl.createTexture());
       gl.bindTexture(gl.TEXTURE_2D, texture);
       if (format) gl.texStorage2D(gl.TEXTURE_2D, 1, format, size.width, size.height);

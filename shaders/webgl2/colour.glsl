@@ -5,8 +5,8 @@
 //#include common/shade.glsl
 //#include common/even.glsl
 uniform highp usampler2D u_places;
-uniform highp sampler2D u_below;   // colour below the texture, and the light
-uniform highp sampler2D u_texture; // texture before it fades, and the factor by which it does
+uniform highp sampler2D u_below;   // colour below the texture
+uniform highp sampler2D u_texture; // texture before it fades, the factor by which it does, and the light
 uniform int u_layer;
 uniform vec3 u_ground;             // behind the surface
 uniform float u_opacity;
@@ -18,14 +18,13 @@ void main()
   ivec2 pixel = ivec2(gl_FragCoord.xy);
   if (int(texelFetch(u_places, pixel, 0).w) != u_layer)
     discard;
-  vec4 below = texelFetch(u_below, pixel, 0);
-  vec3 colour = below.rgb;
+  vec3 colour = texelFetch(u_below, pixel, 0).rgb;
+  vec4 texture_ = texelFetch(u_texture, pixel, 0);
 #ifndef FLOWTEX_IMAGE
-  vec2 texture_ = texelFetch(u_texture, pixel, 0).rg;
   if (u_even)
     texture_.x -= flowtexMeanAround(pixel);
   colour = flowtexShade(colour, texture_.x * texture_.y);
 #endif
   // One layer before the ground: no order of drawing to keep.
-  flowtexOut = vec4(mix(u_ground, below.a * colour, u_opacity), 1.0);
+  flowtexOut = vec4(mix(u_ground, texture_.z * colour, u_opacity), 1.0);
 }

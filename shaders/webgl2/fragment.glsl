@@ -26,8 +26,8 @@ uniform vec3 u_colour;
 uniform bool u_lit;
 uniform vec3 u_toEye;      // way to the light, which is the camera's own
 
-layout(location = 0) out vec4 flowtexUnder;    // colour below the texture, and the light
-layout(location = 1) out vec2 flowtexTextured; // texture before it fades, and the factor by which it does
+layout(location = 0) out vec4 flowtexUnder;    // colour below the texture
+layout(location = 1) out vec4 flowtexTextured; // texture before it fades, the factor by which it does, and the light
 
 // The share at a place, between the corners of its triangle.
 float flowtexShareAt(vec2 coordinate, int triangle)
@@ -86,9 +86,9 @@ void main()
 #endif
   FlowtexPlace place = flowtexFindPlace(vec2(pixel) + 0.5, uintBitsToFloat(drawn.xy));
 #ifdef FLOWTEX_IMAGE
-  flowtexTextured = flowtexImageAt(place);
+  vec2 textured = flowtexImageAt(place);
 #else
-  flowtexTextured = flowtexValueAt(place);
+  vec2 textured = flowtexValueAt(place);
 #endif
   vec3 colour = u_mapped ? flowtexMapped(flowtexShareAt(place.coordinate, triangle)) : u_colour;
   if (u_showLevel)
@@ -102,5 +102,6 @@ void main()
     float facing = abs(dot(normalize(place.normal), u_toEye));
     light = min(FLOWTEX_AMBIENT_LIGHT + FLOWTEX_DIFFUSE_LIGHT * facing, 1.0);
   }
-  flowtexUnder = vec4(colour, light);
+  flowtexUnder = vec4(colour, 1.0);
+  flowtexTextured = vec4(textured, light, 0.0);
 }

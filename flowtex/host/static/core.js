@@ -888,15 +888,15 @@ block%across,Math.floor(block/across)].map(at=>at*mesh.tileCells),[x,y]=first.ma
 shape2[1-k]-1-at)/2**level));graphics.programs.use(program,{u_block:[...first,level,x]}),gl.drawArrays(gl.TRIANGLES,0,6*
 x*y)})})}sum(program,top,rows,valuesOf){let{graphics,width,height,target}=this,gl=graphics.context,bottom=height-top-rows;
 gl.bindFramebuffer(gl.FRAMEBUFFER,target?.frames[1]??null),gl.enable(gl.SCISSOR_TEST),gl.scissor(0,bottom,width,rows),gl.
-clearBufferfv(gl.COLOR,1,[0,0,0,0]),this.pixels(program,bottom,rows,valuesOf),gl.readPixels(0,0,1,1,gl.RGBA,gl.FLOAT,new Float32Array(
-4)),gl.bindFramebuffer(gl.FRAMEBUFFER,null)}colour(grain,valuesOf){let{graphics,layers,means,height,target}=this,gl=graphics.
-context,[{scene:root}]=layers;this.bind();let blocks=grain===null?null:evenBlocks(root.header.constants.even,grain,this.
-box);blocks&&means.draw(root.programs("blocks"),root.programs("blur"),blocks),gl.bindFramebuffer(gl.FRAMEBUFFER,target?.
-frames[2]??null);let own={u_first:blocks?.first??[0,0],u_side:blocks?.side??1};this.pixels(root.programs("colour"),0,height,
-scene=>({...valuesOf(scene),...own})),gl.bindFramebuffer(gl.FRAMEBUFFER,null)}boxOf({box}){let{width,height}=this,[left,
-low,right,high]=box.map((at,side)=>(.5+.5*at)*(side%2?height:width));return[...[left,low].map(at=>Math.max(Math.floor(at),
-0)),Math.min(Math.ceil(right),width),Math.min(Math.ceil(high),height)]}get box(){let boxes=this.seen.map(seen=>this.boxOf(
-seen)).filter(([x,y,right,high])=>x<right&&y<high);return boxes.length?[0,1,2,3].map(side=>{let ends2=boxes.map(box=>box[side]);
+clearBufferfv(gl.COLOR,1,[0,0,0,0]),this.pixels(program,bottom,rows,valuesOf),gl.readPixels(0,0,1,1,gl.RGBA,gl.UNSIGNED_BYTE,
+new Uint8Array(4)),gl.bindFramebuffer(gl.FRAMEBUFFER,null)}colour(grain,valuesOf){let{graphics,layers,means,height,target}=this,
+gl=graphics.context,[{scene:root}]=layers;this.bind();let blocks=grain===null?null:evenBlocks(root.header.constants.even,
+grain,this.box);blocks&&means.draw(root.programs("blocks"),root.programs("blur"),blocks),gl.bindFramebuffer(gl.FRAMEBUFFER,
+target?.frames[2]??null);let own={u_first:blocks?.first??[0,0],u_side:blocks?.side??1};this.pixels(root.programs("colour"),
+0,height,scene=>({...valuesOf(scene),...own})),gl.bindFramebuffer(gl.FRAMEBUFFER,null)}boxOf({box}){let{width,height}=this,
+[left,low,right,high]=box.map((at,side)=>(.5+.5*at)*(side%2?height:width));return[...[left,low].map(at=>Math.max(Math.floor(
+at),0)),Math.min(Math.ceil(right),width),Math.min(Math.ceil(high),height)]}get box(){let boxes=this.seen.map(seen=>this.
+boxOf(seen)).filter(([x,y,right,high])=>x<right&&y<high);return boxes.length?[0,1,2,3].map(side=>{let ends2=boxes.map(box=>box[side]);
 return side<2?Math.min(...ends2):Math.max(...ends2)}):[0,0,1,1]}pixels(program,bottom,rows,valuesOf){let{graphics,width,
 height}=this,gl=graphics.context;gl.viewport(0,0,width,height),gl.enable(gl.SCISSOR_TEST),gl.disable(gl.DEPTH_TEST),gl.disable(
 gl.BLEND),gl.bindVertexArray(null),this.layers.forEach(({scene},n)=>{let[left,low,right,high]=this.boxOf(this.seen[n]),[
@@ -921,7 +921,7 @@ Math.max(strides[i],step+level)})}),gl.activeTexture(gl.TEXTURE0+UNITS2[3]),gl.b
 null),gl.pixelStorei(gl.UNPACK_ALIGNMENT,1),gl.texImage2D(gl.TEXTURE_2D,0,gl.R8UI,columns,rows,0,gl.RED_INTEGER,gl.UNSIGNED_BYTE,
 strides)}make(width,height){let{target,graphics}=this;if(target&&target.width>=width&&target.height>=height)return target;
 let gl=graphics.context,{key}=this,size={width:Math.max(width,target?.width??0),height:Math.max(height,target?.height??0)};
-this.dispose();let textures=[gl.RGBA32UI,gl.DEPTH_COMPONENT24,gl.RGBA8,0,gl.RGBA16F,gl.RG32F].map(format=>{let texture=graphics.
+this.dispose();let textures=[gl.RGBA32UI,gl.DEPTH_COMPONENT24,gl.RGBA8,0,gl.RGBA8,gl.RGBA16F].map(format=>{let texture=graphics.
 counted(gl.createTexture());return gl.bindTexture(gl.TEXTURE_2D,texture),format&&gl.texStorage2D(gl.TEXTURE_2D,1,format,
 size.width,size.height),gl.texParameteri(gl.TEXTURE_2D,gl.TEXTURE_MIN_FILTER,gl.NEAREST),gl.texParameteri(gl.TEXTURE_2D,
 gl.TEXTURE_MAG_FILTER,gl.NEAREST),texture}),[first,second]=[gl.COLOR_ATTACHMENT0,gl.COLOR_ATTACHMENT1],[places,depths,colours,

@@ -472,7 +472,7 @@ let _=f.blocks.shape[1];y.forEach((L,C)=>{if(L<0||M)return;let I=[C%_,Math.floor
 (U,Z)=>Math.ceil(Math.min(l.tileCells,w[1-Z]-1-U)/2**L));s.programs.use(e,{u_block:[...I,L,J]}),c.drawArrays(c.TRIANGLES,
 0,6*J*ae)})})}sum(e,t,r,n){let{graphics:s,width:o,height:i,target:c}=this,l=s.context,h=i-t-r;l.bindFramebuffer(l.FRAMEBUFFER,
 c?.frames[1]??null),l.enable(l.SCISSOR_TEST),l.scissor(0,h,o,r),l.clearBufferfv(l.COLOR,1,[0,0,0,0]),this.pixels(e,h,r,n),
-l.readPixels(0,0,1,1,l.RGBA,l.FLOAT,new Float32Array(4)),l.bindFramebuffer(l.FRAMEBUFFER,null)}colour(e,t){let{graphics:r,
+l.readPixels(0,0,1,1,l.RGBA,l.UNSIGNED_BYTE,new Uint8Array(4)),l.bindFramebuffer(l.FRAMEBUFFER,null)}colour(e,t){let{graphics:r,
 layers:n,means:s,height:o,target:i}=this,c=r.context,[{scene:l}]=n;this.bind();let h=e===null?null:Ms(l.header.constants.
 even,e,this.box);h&&s.draw(l.programs("blocks"),l.programs("blur"),h),c.bindFramebuffer(c.FRAMEBUFFER,i?.frames[2]??null);
 let u={u_first:h?.first??[0,0],u_side:h?.side??1};this.pixels(l.programs("colour"),0,o,m=>({...t(m),...u})),c.bindFramebuffer(
@@ -498,7 +498,7 @@ f*l;t[g].levels.forEach((v,x)=>{if(v<0||i.triangles)return;let[[w,M],[A,S]]=[Mat
 _*u;L+=1)m[L]=Math.max(m[L],f+v)})}),n.activeTexture(n.TEXTURE0+As[3]),n.bindTexture(n.TEXTURE_2D,r?.textures[3]??null),
 n.pixelStorei(n.UNPACK_ALIGNMENT,1),n.texImage2D(n.TEXTURE_2D,0,n.R8UI,u,h,0,n.RED_INTEGER,n.UNSIGNED_BYTE,m)}make(e,t){
 let{target:r,graphics:n}=this;if(r&&r.width>=e&&r.height>=t)return r;let s=n.context,{key:o}=this,i={width:Math.max(e,r?.
-width??0),height:Math.max(t,r?.height??0)};this.dispose();let c=[s.RGBA32UI,s.DEPTH_COMPONENT24,s.RGBA8,0,s.RGBA16F,s.RG32F].
+width??0),height:Math.max(t,r?.height??0)};this.dispose();let c=[s.RGBA32UI,s.DEPTH_COMPONENT24,s.RGBA8,0,s.RGBA8,s.RGBA16F].
 map(b=>{let y=n.counted(s.createTexture());return s.bindTexture(s.TEXTURE_2D,y),b&&s.texStorage2D(s.TEXTURE_2D,1,b,i.width,
 i.height),s.texParameteri(s.TEXTURE_2D,s.TEXTURE_MIN_FILTER,s.NEAREST),s.texParameteri(s.TEXTURE_2D,s.TEXTURE_MAG_FILTER,
 s.NEAREST),y}),[l,h]=[s.COLOR_ATTACHMENT0,s.COLOR_ATTACHMENT1],[u,m,p,,f,d]=c,g=[[[l,u],[s.DEPTH_ATTACHMENT,m]],[[l,f],[
