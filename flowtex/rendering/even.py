@@ -23,8 +23,18 @@ class EvenBlocks:
     reach: int  #: Blocks of the blur on each side.
 
     @classmethod
-    def of(cls, grain: float, box: tuple[int, int, int, int]) -> EvenBlocks:
-        """Return the blocks for a grain in pixels, by first and end of columns and rows."""
+    def of(
+        cls,
+        grain: float,
+        box: tuple[int, int, int, int],
+        *,
+        shift: tuple[int, int] = (0, 0),
+        clip: tuple[int, int] | None = None,
+    ) -> EvenBlocks:
+        """Return the blocks for a grain in pixels, by first and end of columns and rows.
+
+        Pixels may be shifted from those of a picture, which ends before ``clip``.
+        """
         deviation = const.EVEN_SIGMA * grain
         doublings = np.floor(np.log2(np.sqrt(2.0) * deviation))
         side = 2 ** max(int(doublings), 0)
@@ -33,9 +43,14 @@ class EvenBlocks:
             # Means of blocks and linear interpolation have a variance of their own.
             variance -= 0.25
         left, right, low, high = box
-        # Blocks stay where they are when the surface moves.
-        first = (left // side * side, low // side * side)
+        # Blocks stay where they are in the picture when the surface moves.
+        starts = (max(left, -shift[0]), max(low, -shift[1]))
+        first = tuple(
+            (start + by) // side * side - by for start, by in zip(starts, shift, strict=True)
+        )
         end = (right, high)
+        if clip is not None:
+            end = (min(right, clip[0]), min(high, clip[1]))
         columns, rows = (-(-(end[n] - first[n]) // side) + 2 for n in range(2))
         reach = int(np.ceil(EVEN_RADII * np.sqrt(variance)))
         return cls(side, first, end, (columns, rows), float(variance), reach)

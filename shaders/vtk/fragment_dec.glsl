@@ -2,6 +2,7 @@
 //#include common/shade.glsl
 #ifdef FLOWTEX_DEFERRED
 uniform sampler2D u_sums; // colour and texture of each pixel
+uniform int u_margin;     // pixels of them before the first of the frame
 #else
 in vec2 flowtexCoordinateVSOutput;
 in vec3 flowtexPositionVSOutput;

@@ -2,7 +2,7 @@
   // its share of the light, and lights them next.
   vec3 flowtexColour = (ambientColor + diffuseColor) / max(ambientIntensity + diffuseIntensity, FLOWTEX_LEAST_LIGHTNESS);
 #ifdef FLOWTEX_DEFERRED
-  vec4 flowtexSum = texelFetch(u_sums, ivec2(gl_FragCoord.xy), 0);
+  vec4 flowtexSum = texelFetch(u_sums, ivec2(gl_FragCoord.xy) + u_margin, 0);
 #ifdef FLOWTEX_OWN
   if (u_showLevel)
 #endif

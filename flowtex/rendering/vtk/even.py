@@ -5,6 +5,7 @@ from __future__ import annotations
 from vtkmodules.vtkRenderingOpenGL2 import vtkOpenGLRenderWindow
 
 from flowtex.rendering.even import EvenBlocks
+from flowtex.rendering.vtk.area import PassArea
 from flowtex.rendering.vtk.targets import Box, Rectangle, Target
 
 BLEND = 0x0BE2  #: OpenGL's number of blending.
@@ -47,13 +48,15 @@ class EvenPass:
         left, right, low, high = zip(self._box, box, strict=True)
         self._box = (min(left), max(right), min(low), max(high))
 
-    def draw(self, window: vtkOpenGLRenderWindow, sums: Target, grain: float | None) -> None:
+    def draw(
+        self, window: vtkOpenGLRenderWindow, sums: Target, grain: float | None, area: PassArea
+    ) -> None:
         """Subtract the local mean for a grain in pixels, if any, from the texture in the sums."""
         sums.frame.RemoveColorAttachment(1)
         sums.frame.ActivateDrawBuffer(0)
         if grain is None or self._box is None:
             return
-        blocks = EvenBlocks.of(grain, self._box)
+        blocks = EvenBlocks.of(grain, self._box, shift=area.shift, clip=area.end)
         state = window.GetState()
         state.vtkglDisable(DEPTH_TEST)
         self._draw_means(window, blocks)

@@ -20,6 +20,7 @@ from vtkmodules.vtkRenderingCore import vtkMapper
 from vtkmodules.vtkRenderingOpenGL2 import vtkOpenGLRenderWindow, vtkShaderProgram, vtkTextureObject
 
 from flowtex._util.array_types import AnyArray, Floats, Floats32, Halves, Ints
+from flowtex.rendering.even import EvenBlocks
 from flowtex.rendering.mesh_levels import MeshLevels, TriangleBlocks, mesh_levels_of
 from flowtex.rendering.shaders import shader_folder, shader_text
 from flowtex.rendering.tile_choice import TileView
@@ -138,6 +139,7 @@ class FlowLayer:
         #: Whether passes before the frame sum the pixels, and what they have summed.
         self.deferred = False
         self.sums: vtkTextureObject | None = None
+        self.sums_margin = 0  #: Pixels of these before the first of the frame.
         self._is_blank = False
         self._observed = observe_draws(self._mapper, self.before_draw)
 
@@ -210,6 +212,13 @@ class FlowLayer:
         return float(self._settings.grain * self.view.density)
 
     @property
+    def even_margin(self) -> int:
+        """Pixels beyond the edges of a frame on which its colours depend."""
+        if self.even_grain is None:
+            return 0
+        return EvenBlocks.of(self.even_grain, (0, 1, 0, 1)).margin
+
+    @property
     def _has_own_colours(self) -> bool:
         """Whether VTK's colours are needed: those of vertices, or with edges."""
         prop, colours = self.actor.prop, self._colours
@@ -277,6 +286,7 @@ class FlowLayer:
             if sums.GetTextureUnit() < 0:
                 sums.Activate()
             program.SetUniformi("u_sums", sums.GetTextureUnit())
+            program.SetUniformi("u_margin", self.sums_margin)
 
     def after_frame(self) -> None:
         """Release the texture units."""

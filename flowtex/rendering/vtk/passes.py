@@ -16,7 +16,8 @@ from vtkmodules.util.vtkConstants import VTK_FLOAT
 from vtkmodules.vtkRenderingCore import vtkRenderer
 from vtkmodules.vtkRenderingOpenGL2 import vtkOpenGLRenderWindow, vtkShaderProgram
 
-from flowtex._util.array_types import Floats, Floats32, Ints
+from flowtex._util.array_types import Floats32
+from flowtex.rendering.vtk.area import PassArea, PicturePart, part_of, tile_of
 from flowtex.rendering.vtk.even import EvenPass
 from flowtex.rendering.vtk.flow_mapper import (
     COORDINATE,
@@ -34,6 +35,7 @@ DEPTH_TEST = 0x0B71  #: OpenGL's number of the depth test.
 EQUAL = 0x0202  #: OpenGL's number of the comparison of equal depths.
 ALWAYS = 0x0207  #: OpenGL's number of the comparison that is always true.
 MOST_LAYERS = 4096  #: Most layers, a power of two: their numbers are depths.
+COLOUR_AND_DEPTH = 0x4100  #: OpenGL's number of what is cleared.
 SKIPPED = 3  #: Pixels from one to the next of those in which it is looked for tiles.
 LAST = -1.0  #: Before the actors are drawn, but after all else that waits for the start of a frame.
 
@@ -52,6 +54,8 @@ class DeferredPasses:
         self._places = vtkRenderer()
         self._places.AutomaticLightCreationOff()
         self._alone: tuple[weakref.ref[FlowLayer], _Part, vtkRenderer] | None = None
+        #: What the next frames are a part of, unless they are whole pictures.
+        self.part: PicturePart | None = None
         self._observed = renderer.AddObserver("StartEvent", weak_callback(self._draw), LAST)
 
     @classmethod
@@ -86,7 +90,10 @@ class DeferredPasses:
         state = window.GetState()
         state.Push()
         state.PushFramebufferBindings()
-        buffers = self._draw_places(self._places, renderer)
+        part = self.part or tile_of(window)
+        margin = max((layer.even_margin for layer in layers), default=0)
+        area = PassArea.of(renderer, part, margin)
+        buffers = self._draw_places(self._places, renderer, area)
         places = buffers.places.texture
         places.Activate()
         buffers.sums.bind()
@@ -97,17 +104,13 @@ class DeferredPasses:
         state.vtkglDepthFunc(ALWAYS)
         buffers.number(window)
         state.vtkglDepthFunc(EQUAL)
-        camera = renderer.GetActiveCamera()
-        matrix = camera.GetCompositeProjectionTransformMatrix(renderer.GetTiledAspectRatio(), -1, 1)
-        view = np.asarray(pv.array_from_vtkmatrix(matrix), dtype=float)
-        corner, size = _part_of(window, renderer)
         for surface in surfaces:
             buffers.even.begin(window, buffers.sums)
             for layer in surface:
-                self._parts[layer].sum(buffers, view, corner, size)
+                self._parts[layer].sum(buffers, area)
                 layer.after_frame()
-                layer.sums = buffers.sums.texture
-            buffers.even.draw(window, buffers.sums, surface[0].even_grain)
+                layer.sums, layer.sums_margin = buffers.sums.texture, area.margin
+            buffers.even.draw(window, buffers.sums, surface[0].even_grain, area)
         places.Deactivate()
         state.PopFramebufferBindings()
         state.Pop()
@@ -133,26 +136,37 @@ class DeferredPasses:
         state = window.GetState()
         state.Push()
         state.PushFramebufferBindings()
-        texture = self._draw_places(alone, renderer).places.texture
+        area = PassArea.of(renderer, None, 0)
+        texture = self._draw_places(alone, renderer, area).places.texture
         state.PopFramebufferBindings()
         state.Pop()
         size = texture.GetWidth(), texture.GetHeight()
         pixels = np.empty((size[1], size[0], 4), np.float32)
         texture.Download().Download2D(VTK_FLOAT, pixels.reshape(-1), [*size], 4, [0, 0])
-        (left, low), (width, height) = _part_of(window, renderer)
+        (left, low), (width, height) = part_of(window, renderer)
         seen = pixels[low : low + height : SKIPPED, left : left + width : SKIPPED].reshape(-1, 4)
         return seen[seen[:, 3] > 0]
 
-    def _draw_places(self, places: vtkRenderer, renderer: pv.Renderer) -> _Buffers:
+    def _draw_places(
+        self, places: vtkRenderer, renderer: pv.Renderer, area: PassArea
+    ) -> _Buffers:
         window = renderer.GetRenderWindow()
         buffers = _buffers.get(window)
         if buffers is None or buffers.context != window.GetContextCreationTime():
             buffers = _buffers[window] = _Buffers(window)
-        buffers.fit(window)
+        buffers.fit(window, area.margin)
         buffers.places.bind()
+        if area.margin:
+            # The renderer clears what the frame shows.
+            state = window.GetState()
+            state.vtkglDisable(SCISSOR)
+            state.vtkglClearColor(0.0, 0.0, 0.0, 0.0)
+            state.vtkglClear(COLOUR_AND_DEPTH)
         places.SetRenderWindow(window)
+        for layer_part in self._parts.values():
+            layer_part.area = area
         places.SetViewport(renderer.GetViewport())
-        places.SetActiveCamera(renderer.GetActiveCamera())
+        places.SetActiveCamera(area.camera(renderer.GetActiveCamera()))
         places.Render()
         return buffers
 
@@ -169,14 +183,6 @@ class DeferredPasses:
             self._parts[layer].follow(number + 1)
 
 
-def _part_of(window: vtkOpenGLRenderWindow, renderer: pv.Renderer) -> tuple[Ints, Ints]:
-    """Return corner and size of a renderer in the pixels of the window's present part, (2,)."""
-    whole, tile = np.array(window.GetSize()), np.reshape(window.GetTileViewport(), (2, 2))
-    shown = np.clip(np.reshape(renderer.GetViewport(), (2, 2)), tile[0], tile[1]) - tile[0]
-    low, high = np.floor(shown * whole + 0.5).astype(int)
-    return low, high - low
-
-
 class _Buffers:
     """The textures of one window: its renderers draw one after another, so they share them."""
 
@@ -187,10 +193,11 @@ class _Buffers:
         self.even = EvenPass()
         self._numbers = Rectangle("depth", frozenset())
 
-    def fit(self, window: vtkOpenGLRenderWindow) -> None:
+    def fit(self, window: vtkOpenGLRenderWindow, margin: int) -> None:
         width, height = window.GetActualSize()
-        self.places.fit(window, (width, height))
-        self.sums.fit(window, (width, height))
+        size = (width + 2 * margin, height + 2 * margin)
+        self.places.fit(window, size)
+        self.sums.fit(window, size)
 
     def number(self, window: vtkOpenGLRenderWindow) -> None:
         self._numbers.use(window)
@@ -217,6 +224,7 @@ class _Part:
         self.actor = pv.Actor(mapper=FlowMapper(mesh))
         self.actor.mapper.scalar_visibility = False
         self.actor.prop.lighting = False
+        self.area: PassArea | None = None  #: In which places are drawn.
         self._number = 0
         self._variant: frozenset[str] | None = None
         observe_draws(self.actor.mapper, self._before_places)
@@ -245,23 +253,23 @@ class _Part:
         map_attributes(self.actor.mapper, arrays)
         insert_text(self.actor, "flowtex places", "place_", variant)
 
-    def sum(self, buffers: _Buffers, view: Floats, corner: Ints, size: Ints) -> None:
-        """Sum the pixels of the layer, in a part of the window with a corner and a size."""
+    def sum(self, buffers: _Buffers, area: PassArea) -> None:
+        """Sum the pixels of the layer."""
         layer = self._layer()
         assert layer is not None and layer.window is not None
-        box = layer.box(view, size)
+        box = layer.box(area.view, area.size)
         if box is None:
             return
         self._sum.use(layer.window)
         program = self._sum.program
         layer.before_draw(program)
         program.SetUniformi("u_places", buffers.places.texture.GetTextureUnit())
-        origin, along, up = layer.rays(view, size)
-        origin -= corner[0] * along + corner[1] * up
+        origin, along, up = layer.rays(area.view, area.size)
+        x, y = area.corner.tolist()
+        origin -= x * along + y * up
         for name, value in (("u_rayCorner", origin), ("u_rayX", along), ("u_rayY", up)):
             program.SetUniform3f(name, value.tolist())
         left, right, low, high = box
-        x, y = corner.tolist()
         inside = (left + x, right + x, low + y, high + y)
         depth = self._number / MOST_LAYERS
         buffers.even.include(inside)
@@ -273,3 +281,7 @@ class _Part:
             # The fourth channel is no opacity.
             window.GetState().vtkglDisable(BLEND)
             program.SetUniformf("u_layer", self._number)
+            area = self.area
+            if area is not None and area.margin:
+                window.GetState().vtkglDisable(SCISSOR)
+                window.GetState().vtkglViewport(*area.corner.tolist(), *area.size.tolist())
