@@ -26,6 +26,8 @@ from flowtex.field.interpolation import steps_around
 from flowtex.field.steps import LazySteps
 from flowtex.plotting.handle import FlowHandle
 from flowtex.rendering.camera import Camera, apply_camera, face_alike
+from flowtex.rendering.vtk.area import PicturePart
+from flowtex.rendering.vtk.passes import DeferredPasses
 from flowtex.scene.options import Options
 from flowtex.scene.scene import Scene, follow, make_scenes
 from flowtex.settings import Settings
@@ -354,7 +356,13 @@ class Viewport:
         camera.SetParallelScale(self.camera.parallel_scale * down / high)
         half = np.radians(self.camera.view_angle) / 2
         camera.SetViewAngle(float(np.degrees(2 * np.arctan(np.tan(half) * down / high))))
+        passes = DeferredPasses.of(self.plotter.renderer)
+        if part is not None:
+            scale = width / across
+            corner = (left * scale, (high - top - down) * scale)
+            passes.part = PicturePart(*(round(n) for n in (*corner, wide * scale, high * scale)))
         window.Render()
+        passes.part = None
         camera.SetWindowCenter(0, 0)
         apply_camera(self.camera, camera)
         values = vtkUnsignedCharArray()

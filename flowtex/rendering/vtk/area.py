@@ -1,7 +1,7 @@
 """Where a renderer draws, and the margin of a frame that is a part of a larger picture.
 
-The local mean of a texture depends on pixels around it. In a tile of a large picture some of these are
-beyond its edges, so the passes draw more than the frame shows, and tiles join without a seam.
+The local mean of a texture depends on pixels around it. In a tile of a large picture some of these
+are beyond its edges, so the passes draw more than the frame shows, and tiles join without a seam.
 """
 
 from __future__ import annotations

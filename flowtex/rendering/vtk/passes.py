@@ -118,8 +118,12 @@ class DeferredPasses:
     def _surfaces(self) -> list[list[FlowLayer]]:
         """Return the layers to draw of each surface that has any."""
         owners = [owner for owner in self._shown if owner not in self._hidden]
-        surfaces = [[layer for layer in self._shown[owner] if layer.deferred] for owner in owners]
-        return [surface for surface in surfaces if surface]
+        surfaces = []
+        for owner in owners:
+            layers = [layer for layer in self._shown[owner] if layer.deferred]
+            if layers:
+                surfaces.append(layers)
+        return surfaces
 
     def places(self, layer: FlowLayer) -> Floats32:
         """Return places (N, 4) of enough pixels that are seen of a layer by itself."""
@@ -147,9 +151,7 @@ class DeferredPasses:
         seen = pixels[low : low + height : SKIPPED, left : left + width : SKIPPED].reshape(-1, 4)
         return seen[seen[:, 3] > 0]
 
-    def _draw_places(
-        self, places: vtkRenderer, renderer: pv.Renderer, area: PassArea
-    ) -> _Buffers:
+    def _draw_places(self, places: vtkRenderer, renderer: pv.Renderer, area: PassArea) -> _Buffers:
         window = renderer.GetRenderWindow()
         buffers = _buffers.get(window)
         if buffers is None or buffers.context != window.GetContextCreationTime():
