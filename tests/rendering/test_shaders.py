@@ -37,7 +37,7 @@ def test_every_uniform_that_is_declared_is_set() -> None:
     texts = map(
         shaders.shader_source,
         (
-            *("common/uniforms.glsl", "common/arrow.glsl", "common/place.glsl"),
+            *("common/uniforms.glsl", "common/arrow.glsl", "common/place.glsl", "common/even.glsl"),
             *(f"vtk/{path.name}" for path in (shaders.shader_folder() / "vtk").iterdir()),
         ),
     )

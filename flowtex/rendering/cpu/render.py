@@ -75,6 +75,8 @@ def render(
     destination ``steps``. ``lookup`` replaces the noise.
     """
     values = uniforms(textures, settings, view_state(textures, camera, view or ViewState(), steps))
+    # The local mean of other values than the noise belongs to them.
+    values["u_even"] &= lookup is None
     coverage = cover(textures.geometry.field.surface, camera, size)
     fragments = Fragments.of(textures, coverage)
     level = slice_level(fragments.coordinate, values)
