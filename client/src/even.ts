@@ -4,7 +4,7 @@ import type { Graphics } from "./context.ts";
 import { SAMPLERS, type Program } from "./programs.ts";
 import type { Header } from "./protocol.ts";
 
-/** Squares of pixels, whose means are blurred and interpolated, as flowtex/rendering/even.py has them. */
+/** Squares of pixels, around whose middles means are taken and interpolated, as in flowtex/rendering/even.py. */
 export interface EvenBlocks {
   /** Of a block, in pixels. */
   side: number;
@@ -14,7 +14,7 @@ export interface EvenBlocks {
   /** Columns and rows of them, and one more on each side. */
   columns: number;
   rows: number;
-  /** Of the bell of the blur, in blocks, which goes over so many of them on each side. */
+  /** Of the bell of the means, which goes over so many pixels on each side. */
   variance: number;
   reach: number;
 }
@@ -27,13 +27,13 @@ export function evenBlocks(
 ): EvenBlocks {
   const deviation = sigma * grain;
   const side = 2 ** Math.max(Math.floor(Math.log2(Math.SQRT2 * deviation)), 0);
-  // Means of blocks and linear interpolation have a variance of their own.
-  const own = side > 1 ? 0.25 : 0;
-  const variance = (deviation / side) ** 2 - own;
+  // Linear interpolation has a variance of its own.
+  const own = side > 1 ? side ** 2 / 6 + 1 / 12 : 0;
+  const variance = deviation ** 2 - own;
   // Blocks stay where they are when the surface moves.
   const [x, y] = [left, low].map((at) => Math.floor(at / side) * side);
   const [columns, rows] = [right - x, high - y].map((pixels) => Math.ceil(pixels / side) + 2);
-  const reach = Math.ceil(radii * Math.sqrt(variance));
+  const reach = radii * Math.sqrt(variance);
   return { side, first: [x, y], end: [right, high], columns, rows, variance, reach };
 }
 
@@ -41,8 +41,6 @@ interface Means {
   frame: WebGLFramebuffer;
   texture: WebGLTexture;
 }
-
-const UNIT = SAMPLERS.indexOf("u_means");
 
 /** Means of the blocks of a picture. */
 export class LocalMeans {
@@ -55,24 +53,22 @@ export class LocalMeans {
     this.graphics = graphics;
   }
 
-  /** Draw the means of the texture, which is in its unit, and blur them; they are in their unit from now on. */
-  draw(means: Program, blur: Program, blocks: EvenBlocks): void {
+  /** Draw the means along the rows of a texture, and of these along the columns; they are in their unit then. */
+  draw(blur: Program, blocks: EvenBlocks, texture: WebGLTexture | null): void {
     const { graphics } = this;
     const gl = graphics.context;
-    const { side, first: u_first, end: u_end, columns, rows, variance, reach } = blocks;
-    this.fit(columns, rows);
+    const { side, first, end, columns, rows, variance, reach } = blocks;
+    const [across, upward] = [end[0] - first[0], end[1] - first[1]];
+    this.fit(columns, Math.max(upward, rows));
     gl.bindVertexArray(null);
-    gl.viewport(0, 0, columns, rows);
     for (const test of [gl.SCISSOR_TEST, gl.DEPTH_TEST, gl.BLEND]) gl.disable(test);
-    const [first, second] = this.targets;
-    graphics.programs.use(means, { u_first, u_end, u_side: side });
-    this.pass(first);
-    const values = { u_blocks: [columns, rows], u_variance: variance, u_reach: reach };
-    graphics.programs.use(blur, { ...values, u_along: [1, 0] });
-    this.pass(second, first);
-    graphics.programs.use(blur, { u_along: [0, 1] });
-    this.pass(first, second);
-    this.bind(first);
+    const [byRow, means] = this.targets;
+    const values = { u_side: side, u_variance: variance, u_reach: reach };
+    graphics.programs.use(blur, { ...values, u_from: first, u_along: [1, 0], u_count: across });
+    this.pass(byRow, columns, upward, texture);
+    graphics.programs.use(blur, { u_from: [0, 0], u_along: [0, 1], u_count: upward });
+    this.pass(means, columns, rows, byRow.texture);
+    this.bind("u_means", means.texture);
   }
 
   dispose(): void {
@@ -84,16 +80,17 @@ export class LocalMeans {
     this.columns = this.rows = 0;
   }
 
-  private pass(to: Means, from?: Means): void {
+  private pass({ frame }: Means, width: number, height: number, source: WebGLTexture | null): void {
     const gl = this.graphics.context;
-    if (from) this.bind(from);
-    gl.bindFramebuffer(gl.FRAMEBUFFER, to.frame);
+    this.bind("u_source", source);
+    gl.bindFramebuffer(gl.FRAMEBUFFER, frame);
+    gl.viewport(0, 0, width, height);
     gl.drawArrays(gl.TRIANGLES, 0, 3);
   }
 
-  private bind({ texture }: Means): void {
+  private bind(name: string, texture: WebGLTexture | null): void {
     const gl = this.graphics.context;
-    gl.activeTexture(gl.TEXTURE0 + UNIT);
+    gl.activeTexture(gl.TEXTURE0 + SAMPLERS.indexOf(name));
     gl.bindTexture(gl.TEXTURE_2D, texture);
     gl.activeTexture(gl.TEXTURE0 + SAMPLERS.length);
   }

@@ -158,7 +158,7 @@ export class Places {
     const [{ scene: root }] = layers;
     this.bind();
     const blocks = grain === null ? null : evenBlocks(root.header.constants.even, grain, this.box);
-    if (blocks) means.draw(root.programs("blocks"), root.programs("blur"), blocks);
+    if (blocks) means.draw(root.programs("blur"), blocks, target?.textures[5] ?? null);
     gl.bindFramebuffer(gl.FRAMEBUFFER, target?.frames[2] ?? null);
     const own = { u_first: blocks?.first ?? [0, 0], u_side: blocks?.side ?? 1 };
     this.pixels(root.programs("colour"), 0, height, (scene) => ({ ...valuesOf(scene), ...own }));

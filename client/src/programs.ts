@@ -17,7 +17,7 @@ const ATTRIBUTES = [
 export const SAMPLERS = [
   ...["u_slices", "u_slicesNext", "u_image", "u_stepImage", "u_cmap", "u_shares", "u_along", "u_nodes"],
   ...["u_corners", "u_open", "u_places", "u_depths", "u_colours", "u_strides"],
-  ...["u_below", "u_texture", "u_means"],
+  ...["u_below", "u_texture", "u_source", "u_means"],
 ];
 
 export interface Program {

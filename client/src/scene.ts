@@ -79,7 +79,7 @@ export class Scene {
   /** Whether the programs are built that draw the scene, maybe with smooth outlines; asks for them. */
   isReady(settings: Settings, smooth = false): boolean {
     const programs = [false, true].map((isClose) => this.arrows.program(settings, isClose));
-    const names = (["place", "blocks", "blur", "colour", "surface", "smooth", "probe"] as const).filter((name) => smooth || name !== "smooth");
+    const names = (["place", "blur", "colour", "surface", "smooth", "probe"] as const).filter((name) => smooth || name !== "smooth");
     const own = names.map((name) => this.programs(name).ready);
     const others = [...own, this.earth.isReady, this.bodies.isReady, this.marks.isReady(settings)];
     return others.every(Boolean) && programs.every((program) => program?.ready ?? true);
@@ -418,15 +418,14 @@ export class Scene {
     });
   }
 
-  /** The program that draws places, local means of the texture and their blur, colours, the surface with its colours or with smooth outlines, or looks up texels. */
-  programs(name: "place" | "blocks" | "blur" | "colour" | "surface" | "smooth" | "probe"): Program {
+  /** The program that draws places, local means of the texture, colours, the surface with its colours or with smooth outlines, or looks up texels. */
+  programs(name: "place" | "blur" | "colour" | "surface" | "smooth" | "probe"): Program {
     const { programs } = this.graphics;
     const { vertex, place, fullVertex, even, surface, ...others } = this.header.shaders;
     if (name === "place") return programs.get(vertex, place);
     if (name === "smooth") return programs.get(vertex, surface, "FLOWTEX_SMOOTH");
     if (name === "surface") return programs.get(fullVertex, surface);
-    if (name === "blocks") return programs.get(fullVertex, even, "FLOWTEX_EVEN_BLOCKS");
-    if (name === "blur") return programs.get(fullVertex, even, "FLOWTEX_EVEN_BLUR");
+    if (name === "blur") return programs.get(fullVertex, even);
     return programs.get(fullVertex, others[name]);
   }
 

@@ -13,14 +13,14 @@ from flowtex.rendering.uniforms import EVEN_RADII, Values
 
 @dataclass(frozen=True)
 class EvenBlocks:
-    """Blocks of pixels around a surface, whose means are blurred and interpolated."""
+    """Blocks of pixels around a surface, around whose middles means are taken and interpolated."""
 
     side: int  #: Of a block, in pixels, a power of two.
     first: tuple[int, int]  #: Lower left pixel of the first block.
     end: tuple[int, int]  #: Column and row that follow the pixels of the surface.
     size: tuple[int, int]  #: Columns and rows of blocks, and one more on each side.
-    variance: float  #: Of the bell of the blur, in blocks.
-    reach: int  #: Blocks of the blur on each side.
+    variance: float  #: Of the bell of the means, in pixels.
+    reach: float  #: Pixels on each side of its middle at which it ends.
 
     @classmethod
     def of(
@@ -38,10 +38,10 @@ class EvenBlocks:
         deviation = const.EVEN_SIGMA * grain
         doublings = np.floor(np.log2(np.sqrt(2.0) * deviation))
         side = 2 ** max(int(doublings), 0)
-        variance = (deviation / side) ** 2
+        variance = deviation**2
         if side > 1:
-            # Means of blocks and linear interpolation have a variance of their own.
-            variance -= 0.25
+            # Linear interpolation has a variance of its own.
+            variance -= side**2 / 6 + 1 / 12
         left, right, low, high = box
         # Blocks stay where they are in the picture when the surface moves.
         starts = (max(left, -shift[0]), max(low, -shift[1]))
@@ -52,13 +52,18 @@ class EvenBlocks:
         if clip is not None:
             end = (min(right, clip[0]), min(high, clip[1]))
         columns, rows = (-(-(end[n] - first[n]) // side) + 2 for n in range(2))
-        reach = int(np.ceil(EVEN_RADII * np.sqrt(variance)))
-        return cls(side, first, end, (columns, rows), float(variance), reach)
+        reach = EVEN_RADII * np.sqrt(variance)
+        return cls(side, first, end, (columns, rows), float(variance), float(reach))
 
     @property
     def margin(self) -> int:
-        """Pixels beyond a part of a picture on which the part depends, whole blocks."""
-        return (self.reach + 2) * self.side
+        """Pixels beyond a part of a picture on which the part depends."""
+        return int(np.ceil(self.reach)) + 2 * self.side
+
+    @property
+    def pixels(self) -> tuple[int, int]:
+        """Columns and rows of pixels from the first block to the end of the surface."""
+        return self.end[0] - self.first[0], self.end[1] - self.first[1]
 
 
 def even_gain(near: Floats, stretch: Floats, values: Values) -> Floats:

@@ -2,52 +2,39 @@
 //
 // Noise that is averaged along paths keeps its low frequencies across the flow, and a picture of it looks
 // cloudy. So the local mean of the texture is subtracted from it, over a bell whose deviation is
-// FLOWTEX_EVEN_SIGMA grains. It is computed in four steps: means of square blocks of pixels, a blur of these
-// along the rows and one along the columns, and the linear interpolation of them at each pixel. The blur
-// brings the three to the variance of the bell (flowtex/rendering/even.py).
+// FLOWTEX_EVEN_SIGMA grains. It is computed in three steps: means around the middles of blocks of pixels along
+// the rows, means of these along the columns, and their linear interpolation at each pixel, which all
+// together have the variance of the bell (flowtex/rendering/even.py).
 //
 // Pixels off the surface count as zero, the mean of the texture. So the mean gets less towards a border, and
 // what is left has about the same deviation there as elsewhere: a mean over the surface alone would take away
 // more of it.
 
-#ifdef FLOWTEX_EVEN_BLOCKS
-uniform highp sampler2D u_texture; // texture of each pixel of the surface, zero beside it
-uniform ivec2 u_first;             // lower left pixel of the first block,
-uniform ivec2 u_end;               // and those that follow the upper right of all
-uniform int u_side;                // of a block, in pixels
-
-// Mean of the texture in the block of a texel. Before and after those of the surface there is one more.
-float flowtexBlock(ivec2 texel)
-{
-  ivec2 low = max(u_first + (texel - 1) * u_side, u_first);
-  ivec2 high = min(u_first + texel * u_side, u_end);
-  float sum = 0.0;
-  for (int y = low.y; y < high.y; ++y)
-    for (int x = low.x; x < high.x; ++x)
-      sum += texelFetch(u_texture, ivec2(x, y), 0).r;
-  return sum / float(u_side * u_side);
-}
-#endif
-
 #ifdef FLOWTEX_EVEN_BLUR
-uniform highp sampler2D u_means; // of the blocks
-uniform ivec2 u_blocks;          // their columns and rows
-uniform ivec2 u_along;           // from one to the next, in columns and rows
-uniform int u_reach;             // blocks on each side
-uniform float u_variance;        // of the bell, in blocks
+uniform highp sampler2D u_source; // texture of each pixel of the surface, zero beside it, or means along rows
+uniform ivec2 u_from;             // its texel at the lower left of the first block
+uniform ivec2 u_along;            // from one texel to the next: to the right, or upwards
+uniform int u_count;              // of texels in this direction,
+uniform int u_side;               // of those in a block,
+uniform float u_reach;            // and of those on each side of the middle of the bell
+uniform float u_variance;         // of the bell
 
-// Mean of the means along a row or a column.
+// Mean around the middle of a block, along rows or columns. Before the first block there is one more.
 float flowtexBlurred(ivec2 texel)
 {
+  ivec2 aside = u_from + texel * (1 - u_along);
+  int block = texel.x * u_along.x + texel.y * u_along.y;
+  float middle = (float(block) - 0.5) * float(u_side) - 0.5;
+  int last = int(floor(middle + u_reach));
   float sum = 0.0;
   float weights = 0.0;
-  for (int n = -u_reach; n <= u_reach; ++n)
+  for (int n = int(ceil(middle - u_reach)); n <= last; ++n)
   {
-    float weight = exp(-0.5 * float(n * n) / u_variance);
-    ivec2 at = texel + n * u_along;
+    float away = float(n) - middle;
+    float weight = exp(-0.5 * away * away / u_variance);
     weights += weight;
-    if (at == clamp(at, ivec2(0), u_blocks - 1))
-      sum += weight * texelFetch(u_means, at, 0).r;
+    if (n >= 0 && n < u_count)
+      sum += weight * texelFetch(u_source, aside + n * u_along, 0).r;
   }
   return sum / weights;
 }

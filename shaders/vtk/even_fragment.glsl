@@ -9,9 +9,7 @@ uniform sampler2D u_texture; // texture before it fades, and the factor by which
 void main()
 {
   ivec2 texel = ivec2(gl_FragCoord.xy);
-#if defined(FLOWTEX_EVEN_BLOCKS)
-  gl_FragData[0] = vec4(flowtexBlock(texel), 0.0, 0.0, 0.0);
-#elif defined(FLOWTEX_EVEN_BLUR)
+#ifdef FLOWTEX_EVEN_BLUR
   gl_FragData[0] = vec4(flowtexBlurred(texel), 0.0, 0.0, 0.0);
 #else
   // Added to the texture as it is shown.

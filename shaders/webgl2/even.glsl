@@ -1,4 +1,5 @@
 // One step towards the local mean of the texture.
+#define FLOWTEX_EVEN_BLUR
 
 //#include common/even.glsl
 
@@ -6,10 +7,5 @@ out float flowtexOut;
 
 void main()
 {
-  ivec2 texel = ivec2(gl_FragCoord.xy);
-#ifdef FLOWTEX_EVEN_BLOCKS
-  flowtexOut = flowtexBlock(texel);
-#else
-  flowtexOut = flowtexBlurred(texel);
-#endif
+  flowtexOut = flowtexBlurred(ivec2(gl_FragCoord.xy));
 }

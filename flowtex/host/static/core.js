@@ -199,7 +199,7 @@ precision highp float;
 precision highp int;
 `,ATTRIBUTES=["flowtexPosition","flowtexCoordinate","flowtexNormal","flowtexScalar","flowtexCorners","flowtexRadius"],SAMPLERS=[
 "u_slices","u_slicesNext","u_image","u_stepImage","u_cmap","u_shares","u_along","u_nodes","u_corners","u_open","u_places",
-"u_depths","u_colours","u_strides","u_below","u_texture","u_means"],Programs=class{graphics;entries=new Map;parallel=null;constructor(graphics){
+"u_depths","u_colours","u_strides","u_below","u_texture","u_source","u_means"],Programs=class{graphics;entries=new Map;parallel=null;constructor(graphics){
 this.graphics=graphics}findFeatures(){this.parallel=this.graphics.context.getExtension("KHR_parallel_shader_compile")}clear(){
 this.entries.clear()}dispose(){for(let entry of this.entries.values()){for(let shader of entry.shaders)this.graphics.free(
 "Shader",shader);this.graphics.free("Program",entry.program)}this.clear()}get(vertex,fragment,...defines){let key=[vertex,
@@ -834,24 +834,25 @@ to,between3]=moment,values={},others=scalars.choices.map((choice,number)=>({...c
 ...others]){let names=scene.scalarParts(from,to,each),[before,after]=names.map(part=>parts.get(part)?.data);if(each.name===
 null||each.name in values||!before||!after)continue;let value=n=>before[n]+between3*(after[n]-before[n]);values[each.name]=
 each.flat?value(cell):interpolated(corners,value)}return values}function evenBlocks({sigma,radii},grain,[left,low,right,high]){let deviation=sigma*grain,side=2**Math.max(Math.floor(Math.
-log2(Math.SQRT2*deviation)),0),own=side>1?.25:0,variance=(deviation/side)**2-own,[x,y]=[left,low].map(at=>Math.floor(at/
-side)*side),[columns,rows]=[right-x,high-y].map(pixels=>Math.ceil(pixels/side)+2),reach=Math.ceil(radii*Math.sqrt(variance));
-return{side,first:[x,y],end:[right,high],columns,rows,variance,reach}}var UNIT=SAMPLERS.indexOf("u_means"),LocalMeans=class{graphics;targets=[];columns=0;rows=0;constructor(graphics){
-this.graphics=graphics}draw(means,blur,blocks){let{graphics}=this,gl=graphics.context,{side,first:u_first,end:u_end,columns,
-rows,variance,reach}=blocks;this.fit(columns,rows),gl.bindVertexArray(null),gl.viewport(0,0,columns,rows);for(let test of[
-gl.SCISSOR_TEST,gl.DEPTH_TEST,gl.BLEND])gl.disable(test);let[first,second]=this.targets;graphics.programs.use(means,{u_first,
-u_end,u_side:side}),this.pass(first);let values={u_blocks:[columns,rows],u_variance:variance,u_reach:reach};graphics.programs.
-use(blur,{...values,u_along:[1,0]}),this.pass(second,first),graphics.programs.use(blur,{u_along:[0,1]}),this.pass(first,
-second),this.bind(first)}dispose(){for(let{frame,texture}of this.targets)this.graphics.free("Framebuffer",frame),this.graphics.
-free("Texture",texture);this.targets=[],this.columns=this.rows=0}pass(to,from){let gl=this.graphics.context;from&&this.bind(
-from),gl.bindFramebuffer(gl.FRAMEBUFFER,to.frame),gl.drawArrays(gl.TRIANGLES,0,3)}bind({texture}){let gl=this.graphics.context;
-gl.activeTexture(gl.TEXTURE0+UNIT),gl.bindTexture(gl.TEXTURE_2D,texture),gl.activeTexture(gl.TEXTURE0+SAMPLERS.length)}fit(columns,rows){
-if(this.columns>=columns&&this.rows>=rows)return;let[wide,high]=[Math.max(columns,this.columns),Math.max(rows,this.rows)];
-this.dispose();let{graphics}=this,gl=graphics.context;this.targets=[0,1].map(()=>{let texture=graphics.counted(gl.createTexture());
-gl.bindTexture(gl.TEXTURE_2D,texture),gl.texStorage2D(gl.TEXTURE_2D,1,gl.R32F,wide,high),gl.texParameteri(gl.TEXTURE_2D,
-gl.TEXTURE_MIN_FILTER,gl.NEAREST),gl.texParameteri(gl.TEXTURE_2D,gl.TEXTURE_MAG_FILTER,gl.NEAREST);let frame=graphics.counted(
-gl.createFramebuffer());return gl.bindFramebuffer(gl.FRAMEBUFFER,frame),gl.framebufferTexture2D(gl.FRAMEBUFFER,gl.COLOR_ATTACHMENT0,
-gl.TEXTURE_2D,texture,0),{frame,texture}}),[this.columns,this.rows]=[wide,high]}};var MOST_SIDE_PX=3,PLACE3=5;function mostDoublings({shape:shape2,triangles},blocks,positions2,cells){let[rows,columns]=blocks.
+log2(Math.SQRT2*deviation)),0),own=side>1?side**2/6+1/12:0,variance=deviation**2-own,[x,y]=[left,low].map(at=>Math.floor(
+at/side)*side),[columns,rows]=[right-x,high-y].map(pixels=>Math.ceil(pixels/side)+2),reach=radii*Math.sqrt(variance);return{
+side,first:[x,y],end:[right,high],columns,rows,variance,reach}}var LocalMeans=class{graphics;targets=[];columns=0;rows=0;constructor(graphics){
+this.graphics=graphics}draw(blur,blocks,texture){let{graphics}=this,gl=graphics.context,{side,first,end,columns,rows,variance,
+reach}=blocks,[across,upward]=[end[0]-first[0],end[1]-first[1]];this.fit(columns,Math.max(upward,rows)),gl.bindVertexArray(
+null);for(let test of[gl.SCISSOR_TEST,gl.DEPTH_TEST,gl.BLEND])gl.disable(test);let[byRow,means]=this.targets,values={u_side:side,
+u_variance:variance,u_reach:reach};graphics.programs.use(blur,{...values,u_from:first,u_along:[1,0],u_count:across}),this.
+pass(byRow,columns,upward,texture),graphics.programs.use(blur,{u_from:[0,0],u_along:[0,1],u_count:upward}),this.pass(means,
+columns,rows,byRow.texture),this.bind("u_means",means.texture)}dispose(){for(let{frame,texture}of this.targets)this.graphics.
+free("Framebuffer",frame),this.graphics.free("Texture",texture);this.targets=[],this.columns=this.rows=0}pass({frame},width,height,source){
+let gl=this.graphics.context;this.bind("u_source",source),gl.bindFramebuffer(gl.FRAMEBUFFER,frame),gl.viewport(0,0,width,
+height),gl.drawArrays(gl.TRIANGLES,0,3)}bind(name,texture){let gl=this.graphics.context;gl.activeTexture(gl.TEXTURE0+SAMPLERS.
+indexOf(name)),gl.bindTexture(gl.TEXTURE_2D,texture),gl.activeTexture(gl.TEXTURE0+SAMPLERS.length)}fit(columns,rows){if(this.
+columns>=columns&&this.rows>=rows)return;let[wide,high]=[Math.max(columns,this.columns),Math.max(rows,this.rows)];this.dispose();
+let{graphics}=this,gl=graphics.context;this.targets=[0,1].map(()=>{let texture=graphics.counted(gl.createTexture());gl.bindTexture(
+gl.TEXTURE_2D,texture),gl.texStorage2D(gl.TEXTURE_2D,1,gl.R32F,wide,high),gl.texParameteri(gl.TEXTURE_2D,gl.TEXTURE_MIN_FILTER,
+gl.NEAREST),gl.texParameteri(gl.TEXTURE_2D,gl.TEXTURE_MAG_FILTER,gl.NEAREST);let frame=graphics.counted(gl.createFramebuffer());
+return gl.bindFramebuffer(gl.FRAMEBUFFER,frame),gl.framebufferTexture2D(gl.FRAMEBUFFER,gl.COLOR_ATTACHMENT0,gl.TEXTURE_2D,
+texture,0),{frame,texture}}),[this.columns,this.rows]=[wide,high]}};var MOST_SIDE_PX=3,PLACE3=5;function mostDoublings({shape:shape2,triangles},blocks,positions2,cells){let[rows,columns]=blocks.
 shape,most=new Int8Array(rows*columns).fill(triangles?0:Math.log2(cells));for(let n=0;n<positions2.length;n+=3){if(Number.
 isFinite(positions2[n]))continue;let[j,i]=[Math.floor(n/3/shape2[1]),n/3%shape2[1]];for(let row2 of[Math.floor((j-1)/cells),
 Math.floor(j/cells)])for(let column of[Math.floor((i-1)/cells),Math.floor(i/cells)])row2>=0&&row2<rows&&column>=0&&column<
@@ -891,7 +892,7 @@ gl.bindFramebuffer(gl.FRAMEBUFFER,target?.frames[1]??null),gl.enable(gl.SCISSOR_
 clearBufferfv(gl.COLOR,1,[0,0,0,0]),this.pixels(program,bottom,rows,valuesOf),gl.readPixels(0,0,1,1,gl.RGBA,gl.UNSIGNED_BYTE,
 new Uint8Array(4)),gl.bindFramebuffer(gl.FRAMEBUFFER,null)}colour(grain,valuesOf){let{graphics,layers,means,height,target}=this,
 gl=graphics.context,[{scene:root}]=layers;this.bind();let blocks=grain===null?null:evenBlocks(root.header.constants.even,
-grain,this.box);blocks&&means.draw(root.programs("blocks"),root.programs("blur"),blocks),gl.bindFramebuffer(gl.FRAMEBUFFER,
+grain,this.box);blocks&&means.draw(root.programs("blur"),blocks,target?.textures[5]??null),gl.bindFramebuffer(gl.FRAMEBUFFER,
 target?.frames[2]??null);let own={u_first:blocks?.first??[0,0],u_side:blocks?.side??1};this.pixels(root.programs("colour"),
 0,height,scene=>({...valuesOf(scene),...own})),gl.bindFramebuffer(gl.FRAMEBUFFER,null)}boxOf({box}){let{width,height}=this,
 [left,low,right,high]=box.map((at,side)=>(.5+.5*at)*(side%2?height:width));return[...[left,low].map(at=>Math.max(Math.floor(
@@ -1291,8 +1292,8 @@ before,after,between3]){return between3<.5?before:after}var USERS={position:["no
 this.tile=tile,this.graphics=graphics,this.header=header,this.parts=parts,this.earth=new EarthLayer(graphics,header,parts),
 this.bodies=new Bodies(graphics,header,parts),this.arrows=new Arrows(graphics,header,parts),this.marks=new Marks(graphics,
 header,parts)}isReady(settings,smooth=!1){let programs=[!1,!0].map(isClose=>this.arrows.program(settings,isClose));return[
-...["place","blocks","blur","colour","surface","smooth","probe"].filter(name=>smooth||name!=="smooth").map(name=>this.programs(
-name).ready),this.earth.isReady,this.bodies.isReady,this.marks.isReady(settings)].every(Boolean)&&programs.every(program=>program?.
+...["place","blur","colour","surface","smooth","probe"].filter(name=>smooth||name!=="smooth").map(name=>this.programs(name).
+ready),this.earth.isReady,this.bodies.isReady,this.marks.isReady(settings)].every(Boolean)&&programs.every(program=>program?.
 ready??!0)}missing(before,after){let{geometry,slices,scalars,image,pyramid,formula}=this.header,{trace}=slices,names=["m\
 esh",...trace?.parts??["position",...geometry.planar?[]:["normal"]]];pyramid&&!formula&&names.push("places"),this.header.
 bodies?.runs.length&&names.push(...BODY_PARTS),geometry.triangles&&names.push("triangles","blocks");for(let step of new Set(
@@ -1366,32 +1367,31 @@ n),fourth=place<0?null:extra?.subarray(place*texels,(place+1)*texels);for(let k=
 k+1]=own[2*k+1],fourth&&(all[4*k+3]=fourth[k]);return all};this.fill(texture,{width,height,layers,channels:4,levels:geometry.
 levels},layer)})}programs(name){let{programs}=this.graphics,{vertex,place,fullVertex,even,surface,...others}=this.header.
 shaders;return name==="place"?programs.get(vertex,place):name==="smooth"?programs.get(vertex,surface,"FLOWTEX_SMOOTH"):name===
-"surface"?programs.get(fullVertex,surface):name==="blocks"?programs.get(fullVertex,even,"FLOWTEX_EVEN_BLOCKS"):name==="b\
-lur"?programs.get(fullVertex,even,"FLOWTEX_EVEN_BLUR"):programs.get(fullVertex,others[name])}texels(step,texels){let{graphics,
-header}=this,gl=graphics.context,{slices,geometry}=header,width=geometry.columns.size,texture=this.slices(step),draw=()=>{
-gl.activeTexture(gl.TEXTURE0),gl.bindTexture(gl.TEXTURE_2D_ARRAY,texture),gl.bindVertexArray(null);let places=texels.flatMap(
-n=>[n%width,Math.floor(n/width)]);graphics.programs.use(this.programs("probe"),{u_texels:places}),gl.drawArrays(gl.TRIANGLES,
-0,3)},bits=graphics.numbers(draw,texels.length,slices.count),numbers=new Float32Array(bits.buffer);return(layer,n)=>{let[
-x,y,z,w]=numbers.subarray(4*(layer*texels.length+n));return[x,y,z,w]}}image(name,repeat){let gl=this.graphics.context;return this.
-texture(name,this.key([name],repeat),texture=>{let{data,shape:shape2}=this.part(name),[height,width,channels=1]=shape2,levels=Math.
-floor(Math.log2(Math.max(width,height))),size={width,height,layers:1,channels,levels};this.fill(texture,size,()=>data);let wrap=n=>repeat[n]?
-gl.REPEAT:gl.CLAMP_TO_EDGE;gl.texParameteri(gl.TEXTURE_2D_ARRAY,gl.TEXTURE_WRAP_S,wrap(1)),gl.texParameteri(gl.TEXTURE_2D_ARRAY,
-gl.TEXTURE_WRAP_T,wrap(0))})}fill(texture,size,layer){let gl=this.graphics.context,{width,height,layers,channels,levels}=size;
-makeLayers(gl,texture,size),gl.pixelStorei(gl.UNPACK_ALIGNMENT,1);let format=channels===1?gl.RED:gl.RGBA;for(let n=0;n<layers;n+=
-1)gl.texSubImage3D(gl.TEXTURE_2D_ARRAY,0,0,0,n,width,height,1,format,gl.HALF_FLOAT,layer(n));levels&&gl.generateMipmap(gl.
-TEXTURE_2D_ARRAY)}dropSlices(before,after){let next=after+1<this.header.slices.steps?after+1:0,kept=[before,after,next,after+
-1,...this.wanted];for(let name of[...this.resources.keys()])name.startsWith("slices/")&&!kept.includes(stepOf(name))&&this.
-drop(name)}bindTextures(before,after){let gl=this.graphics.context,{image,scalars}=this.header,steps=String(this.scalarParts(
-before,after));steps!==this.scalarSteps&&this.drop("scalar"),this.scalarSteps=steps,this.dropSlices(before,after),this.bind(
-"u_slices",this.slices(before)),this.bind("u_slicesNext",after===before?null:this.slices(after)),this.bind("u_image",image&&
-this.image("image",[!0,!0])),this.bind("u_stepImage",image&&this.image("step",image.repeat));let colours=texelsOf(this.parts.
-get("cmap")?.data??new Uint8Array(4),scalars);this.bind("u_cmap",this.table("cmap",this.key(["cmap"],scalars.beyond),gl.
-RGBA32F,colours.length/4,()=>colours));let[key,values]=this.shares(before,after);this.bind("u_shares",scalars.name===null?
-null:this.table("scalar",key,gl.RG32F,this.nodesSize[1],values));let along2=()=>alongAxes(image?.alongI??[],image?.alongJ??
-[]);this.bind("u_along",image&&this.table("along","",gl.RG32F,Math.max(image.alongI.length,image.alongJ.length),along2))}};
-function nearest2(gl,target){gl.texParameteri(target,gl.TEXTURE_MIN_FILTER,gl.NEAREST),gl.texParameteri(target,gl.TEXTURE_MAG_FILTER,
-gl.NEAREST)}function filled(data,length3){if(data.length===length3)return data;let all=new data.constructor(length3);return all.
-set(data),all}var REQUEST_MS=60,LOAD_MS=25,BUDGET_BYTES=9e8,BYTES_HELD=3.5,STEPS_HELD2={slices:4,flow:24},Tiles=class{layers=[];missing=[];wanted=0;pending=0;host;root;tiles=new Map;pyramid=null;chosen={
+"surface"?programs.get(fullVertex,surface):name==="blur"?programs.get(fullVertex,even):programs.get(fullVertex,others[name])}texels(step,texels){
+let{graphics,header}=this,gl=graphics.context,{slices,geometry}=header,width=geometry.columns.size,texture=this.slices(step),
+draw=()=>{gl.activeTexture(gl.TEXTURE0),gl.bindTexture(gl.TEXTURE_2D_ARRAY,texture),gl.bindVertexArray(null);let places=texels.
+flatMap(n=>[n%width,Math.floor(n/width)]);graphics.programs.use(this.programs("probe"),{u_texels:places}),gl.drawArrays(
+gl.TRIANGLES,0,3)},bits=graphics.numbers(draw,texels.length,slices.count),numbers=new Float32Array(bits.buffer);return(layer,n)=>{
+let[x,y,z,w]=numbers.subarray(4*(layer*texels.length+n));return[x,y,z,w]}}image(name,repeat){let gl=this.graphics.context;
+return this.texture(name,this.key([name],repeat),texture=>{let{data,shape:shape2}=this.part(name),[height,width,channels=1]=shape2,
+levels=Math.floor(Math.log2(Math.max(width,height))),size={width,height,layers:1,channels,levels};this.fill(texture,size,
+()=>data);let wrap=n=>repeat[n]?gl.REPEAT:gl.CLAMP_TO_EDGE;gl.texParameteri(gl.TEXTURE_2D_ARRAY,gl.TEXTURE_WRAP_S,wrap(1)),
+gl.texParameteri(gl.TEXTURE_2D_ARRAY,gl.TEXTURE_WRAP_T,wrap(0))})}fill(texture,size,layer){let gl=this.graphics.context,
+{width,height,layers,channels,levels}=size;makeLayers(gl,texture,size),gl.pixelStorei(gl.UNPACK_ALIGNMENT,1);let format=channels===
+1?gl.RED:gl.RGBA;for(let n=0;n<layers;n+=1)gl.texSubImage3D(gl.TEXTURE_2D_ARRAY,0,0,0,n,width,height,1,format,gl.HALF_FLOAT,
+layer(n));levels&&gl.generateMipmap(gl.TEXTURE_2D_ARRAY)}dropSlices(before,after){let next=after+1<this.header.slices.steps?
+after+1:0,kept=[before,after,next,after+1,...this.wanted];for(let name of[...this.resources.keys()])name.startsWith("sli\
+ces/")&&!kept.includes(stepOf(name))&&this.drop(name)}bindTextures(before,after){let gl=this.graphics.context,{image,scalars}=this.
+header,steps=String(this.scalarParts(before,after));steps!==this.scalarSteps&&this.drop("scalar"),this.scalarSteps=steps,
+this.dropSlices(before,after),this.bind("u_slices",this.slices(before)),this.bind("u_slicesNext",after===before?null:this.
+slices(after)),this.bind("u_image",image&&this.image("image",[!0,!0])),this.bind("u_stepImage",image&&this.image("step",
+image.repeat));let colours=texelsOf(this.parts.get("cmap")?.data??new Uint8Array(4),scalars);this.bind("u_cmap",this.table(
+"cmap",this.key(["cmap"],scalars.beyond),gl.RGBA32F,colours.length/4,()=>colours));let[key,values]=this.shares(before,after);
+this.bind("u_shares",scalars.name===null?null:this.table("scalar",key,gl.RG32F,this.nodesSize[1],values));let along2=()=>alongAxes(
+image?.alongI??[],image?.alongJ??[]);this.bind("u_along",image&&this.table("along","",gl.RG32F,Math.max(image.alongI.length,
+image.alongJ.length),along2))}};function nearest2(gl,target){gl.texParameteri(target,gl.TEXTURE_MIN_FILTER,gl.NEAREST),gl.
+texParameteri(target,gl.TEXTURE_MAG_FILTER,gl.NEAREST)}function filled(data,length3){if(data.length===length3)return data;
+let all=new data.constructor(length3);return all.set(data),all}var REQUEST_MS=60,LOAD_MS=25,BUDGET_BYTES=9e8,BYTES_HELD=3.5,STEPS_HELD2={slices:4,flow:24},Tiles=class{layers=[];missing=[];wanted=0;pending=0;host;root;tiles=new Map;pyramid=null;chosen={
 choices:new Map,steps:[],names:""};count=0;isWaiting=!1;hasAsked=!1;isOver=!1;failed=new Failures;constructor(host,root){
 this.host=host,this.root=root}has(name,part){return this.tiles.get(name)?.parts.has(part)??!1}fail(name,steps){this.failed.
 add(this.need(name,steps)),this.host.refine()}need(name,steps){return`${name} ${steps} ${this.root.header.scalars.name}`}dispose(){

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import numpy as np
-from scipy.ndimage import convolve1d
 
 from flowtex._util.array_types import Floats
 from flowtex.rendering.even import EvenBlocks
@@ -16,19 +15,22 @@ def local_mean(texture: Floats, grain: float) -> Floats:
     """
     height, width = texture.shape
     blocks = EvenBlocks.of(grain, (0, width, 0, height))
-    side = blocks.side
-    columns, rows = blocks.size
-    padded = np.zeros((rows * side, columns * side))
     # Blocks begin at the lower left.
-    padded[side : side + height, side : side + width] = np.nan_to_num(texture[::-1])
-    means = padded.reshape(rows, side, columns, side).mean(axis=(1, 3))
-    offsets = np.arange(-blocks.reach, blocks.reach + 1)
-    weights = np.exp(-0.5 * offsets**2 / blocks.variance)
-    weights /= weights.sum()
-    for axis in (1, 0):
-        means = convolve1d(means, weights, axis=axis, mode="constant")
-    by_row = _interpolated(means, height, side)
-    return _interpolated(by_row.T, width, side).T[::-1]
+    values = np.nan_to_num(texture[::-1])
+    means = _weights(blocks, 1, height) @ values @ _weights(blocks, 0, width).T
+    by_row = _interpolated(means, height, blocks.side)
+    return _interpolated(by_row.T, width, blocks.side).T[::-1]
+
+
+def _weights(blocks: EvenBlocks, axis: int, count: int) -> Floats:
+    """Return the weights of pixels of a row or column in the means, (M, count)."""
+    beyond = int(np.ceil(blocks.reach)) + blocks.side
+    pixels = np.arange(-beyond, count + 2 * beyond) + 0.5
+    middles = (np.arange(blocks.size[axis]) - 0.5) * blocks.side
+    away = pixels - middles[:, None]
+    weights = np.exp(-0.5 * away**2 / blocks.variance) * (np.abs(away) <= blocks.reach)
+    weights /= weights.sum(axis=1, keepdims=True)
+    return weights[:, beyond : beyond + count]
 
 
 def _interpolated(means: Floats, count: int, side: int) -> Floats:

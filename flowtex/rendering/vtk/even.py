@@ -22,10 +22,10 @@ class EvenPass:
         self._texture = Target(2)
         self._box: Box | None = None
         self._means = Target(1)
-        self._blurred = Target(1)
+        self._rows = Target(1)
         self._steps = {
             name: Rectangle("even", frozenset({f"FLOWTEX_EVEN_{name}"}))
-            for name in ("BLOCKS", "BLUR", "LAID")
+            for name in ("BLUR", "LAID")
         }
 
     def begin(self, window: vtkOpenGLRenderWindow, sums: Target) -> None:
@@ -64,33 +64,34 @@ class EvenPass:
         state.vtkglEnable(BLEND)
         state.vtkglBlendFunc(ONE, ONE)
         step = self._use("LAID", window, blocks)
+        step.program.SetUniform2i("u_first", blocks.first)
         _draw(window, step, sums, {"u_texture": self._texture, "u_means": self._means}, self._box)
         state.vtkglDisable(BLEND)
         state.vtkglEnable(DEPTH_TEST)
 
     def _draw_means(self, window: vtkOpenGLRenderWindow, blocks: EvenBlocks) -> None:
-        """Draw the means of blocks, and blur them along rows and columns."""
-        box = (0, blocks.size[0], 0, blocks.size[1])
-        for target in (self._means, self._blurred):
-            target.grow(window, blocks.size)
-        step = self._use("BLOCKS", window, blocks)
-        step.program.SetUniform2i("u_end", blocks.end)
-        _draw(window, step, self._means, {"u_texture": self._texture}, box)
-        step = self._use("BLUR", window, blocks)
-        step.program.SetUniform2i("u_blocks", blocks.size)
-        step.program.SetUniformi("u_reach", blocks.reach)
-        step.program.SetUniformf("u_variance", blocks.variance)
-        step.program.SetUniform2i("u_along", (1, 0))
-        _draw(window, step, self._blurred, {"u_means": self._means}, box)
-        step.program.SetUniform2i("u_along", (0, 1))
-        _draw(window, step, self._means, {"u_means": self._blurred}, box)
+        """Draw means along the rows, and of these along the columns."""
+        columns, rows = blocks.size
+        across, upward = blocks.pixels
+        self._means.grow(window, blocks.size)
+        self._rows.grow(window, (columns, upward))
+        program = self._use("BLUR", window, blocks).program
+        program.SetUniformf("u_reach", blocks.reach)
+        program.SetUniformf("u_variance", blocks.variance)
+        program.SetUniform2i("u_from", blocks.first)
+        program.SetUniform2i("u_along", (1, 0))
+        program.SetUniformi("u_count", across)
+        step = self._steps["BLUR"]
+        _draw(window, step, self._rows, {"u_source": self._texture}, (0, columns, 0, upward))
+        program.SetUniform2i("u_from", (0, 0))
+        program.SetUniform2i("u_along", (0, 1))
+        program.SetUniformi("u_count", upward)
+        _draw(window, step, self._means, {"u_source": self._rows}, (0, columns, 0, rows))
 
     def _use(self, name: str, window: vtkOpenGLRenderWindow, blocks: EvenBlocks) -> Rectangle:
         step = self._steps[name]
         step.use(window)
-        if name != "BLUR":
-            step.program.SetUniform2i("u_first", blocks.first)
-            step.program.SetUniformi("u_side", blocks.side)
+        step.program.SetUniformi("u_side", blocks.side)
         return step
 
 
