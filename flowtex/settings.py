@@ -251,10 +251,10 @@ class Settings:
         "How strongly the texture darkens and lightens the colour.", default=0.8, span=(0, 1)
     )
     fade: float = _row(
-        "Share of the typical speed below which the texture fades; data of the Earth have 0.2.",
+        "Share of the typical speed below which the texture fades; data of the Earth have 0.05.",
         default=0.0,
         span=(0, 1),
-        switch=0.2,
+        switch=0.05,
     )
     seed: int = _row("Seed of the noise pattern.", default=0, span=(0, 65535))
     motion: str = _row(

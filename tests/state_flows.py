@@ -127,7 +127,7 @@ SETTINGS: dict[str, st.SearchStrategy[Any]] = {
     "resolution": pick([64, 1024]),
     "contrast": pick([0.5, 1.0]),
     "strength": pick([0.0, 0.5, 0.8]),
-    "fade": pick([0.0, 0.2]),
+    "fade": pick([0.0, 0.05, 0.2]),
     "seed": pick([0, 7]),
     "motion": pick(["off", "uniform", "speed"]),
     "arrows": pick([0.0, 16.0]),

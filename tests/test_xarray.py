@@ -41,10 +41,10 @@ def test_a_dataset_has_the_calls_of_the_package(opengl: Any, tmp_path: Path) -> 
 
 def test_the_texture_of_the_earth_fades_where_it_is_calm() -> None:
     ds = winds(np.arange(-20.0, 21.0, 2.0), np.arange(40.0, 61.0, 2.0))
-    assert Scene.of(ds).settings.fade == 0.2
+    assert Scene.of(ds).settings.fade == 0.05
     assert Scene.of(ds, fade=False).settings.fade == 0
     assert Scene.of(flowtex.examples.double_gyre()).settings.fade == 0
-    assert Scene.of(flowtex.examples.double_gyre(), fade=True).settings.fade == 0.2
+    assert Scene.of(flowtex.examples.double_gyre(), fade=True).settings.fade == 0.05
 
 
 @pytest.mark.parametrize("projection", ["platecarree", "robinson", "mercator", "south"])
