@@ -248,7 +248,7 @@ class Settings:
     )
     contrast: float = _row("Contrast of the texture, 0 for none.", default=1.0, span=(0, 4))
     strength: float = _row(
-        "How strongly the texture darkens and lightens the colour.", default=0.8, span=(0, 1)
+        "How strongly the texture darkens and lightens the colour.", default=0.65, span=(0, 1)
     )
     fade: float = _row(
         "Share of the typical speed below which the texture fades; data of the Earth have 0.05.",

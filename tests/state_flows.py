@@ -126,7 +126,7 @@ SETTINGS: dict[str, st.SearchStrategy[Any]] = {
     "fixed_grain": st.booleans(),
     "resolution": pick([64, 1024]),
     "contrast": pick([0.5, 1.0]),
-    "strength": pick([0.0, 0.5, 0.8]),
+    "strength": pick([0.0, 0.5, 0.65]),
     "fade": pick([0.0, 0.05, 0.2]),
     "seed": pick([0, 7]),
     "motion": pick(["off", "uniform", "speed"]),
