@@ -83,8 +83,8 @@ const float FLOWTEX_TONE_RANGE = 0.34;
 const float FLOWTEX_TONE_SLOPE = 1.1;
 const float FLOWTEX_LEAST_LIGHTNESS = 1e-6;
 // Lights: dark sides stay bright enough to read the texture there.
-const float FLOWTEX_AMBIENT_LIGHT = 0.3;
-const float FLOWTEX_DIFFUSE_LIGHT = 0.8;
+const float FLOWTEX_AMBIENT_LIGHT = 0.15;
+const float FLOWTEX_DIFFUSE_LIGHT = 1.0;
 
 // sRGB.
 const float FLOWTEX_SRGB_SLOPE = 12.92;

@@ -33,7 +33,7 @@ STAGES = {
 #: What VTK has declared by the place where the text goes.
 AROUND = {
     "frag": "vec3 ambientColor = vec3(1.0), diffuseColor = vec3(1.0);"
-    "float ambientIntensity = 0.3, diffuseIntensity = 0.8;",
+    "float ambientIntensity = 0.15, diffuseIntensity = 1.0;",
     "vert": "",
     "line": "",
 }
