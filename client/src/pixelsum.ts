@@ -30,6 +30,9 @@ interface Lattice {
   inverse: number;
   /** Hash of that lattice point, the octave and the seed, by axis. */
   key: number[];
+  /** That lattice point, and the hash of the octave and the seed. */
+  origin: number[];
+  salt: number;
 }
 
 /** The lattice of an octave around a point, given from the origin of the noise. */
@@ -42,41 +45,59 @@ function latticeOf(point: Vector, octave: number, u: Uniforms, c: Constants): La
   const origin = finest.map((n) => Math.floor(n / cells));
   const rest = finest.map((n, axis) => (n - origin[axis] * cells + past[axis]) / cells);
   const key = origin.map((n, axis) => Math.imul(n, c.AXIS_PRIMES[axis]));
-  key[0] += Math.imul(octave, c.OCTAVE_PRIME[0]) + Math.imul(Number(u.u_seed), c.SEED_PRIME[0]);
-  return { here: add(rest, point, inverse), inverse, key };
+  const salt = Math.imul(octave, c.OCTAVE_PRIME[0]) + Math.imul(Number(u.u_seed), c.SEED_PRIME[0]);
+  key[0] += salt;
+  return { here: add(rest, point, inverse), inverse, key, origin, salt };
 }
 
-/** Value of a sparse grain for an even one. */
-function sparse(even: number, c: Constants): number {
-  const bright = even >= (1 - 2 * c.SPARSE_SHARE[0]) * c.MOST_GRAIN[0];
-  return c.MOST_GRAIN[0] * (bright ? c.SPARSE_HIGH[0] : -c.SPARSE_LOW[0]);
+/** Scatters the key of an axis. */
+function scatter(key: number, c: Constants): number {
+  const whole = key >>> 0;
+  return Math.imul(whole ^ (whole >>> c.HASH_SHIFT[0]), c.HASH_FACTORS[0]);
+}
+
+/** Value of a grain of streaklets at whole coordinates: in every other block one is bright. */
+function sparseGrain(cell: number[], { salt }: Lattice, c: Constants): number {
+  const [all] = c.BLOCK_BITS;
+  const bits = Math.floor(all / cell.length);
+  let hash = 0;
+  let place = (salt >>> 31) << all;
+  cell.forEach((n, axis) => {
+    const block = n >>> bits;
+    const key = Math.imul(block, c.AXIS_PRIMES[axis]) + (axis === 0 ? salt : 0);
+    hash ^= scatter(key, c);
+    place |= (n & (2 ** bits - 1)) << (bits * axis);
+    place ^= (block & 1) << all;
+  });
+  const isBright = Math.imul(hash, c.HASH_FACTORS[1]) >>> (32 - all) === place;
+  return c.MOST_GRAIN[0] * (isBright ? c.SPARSE_HIGH[0] : -c.SPARSE_LOW[0]);
 }
 
 /** Value of an octave at a displacement, of variance 1; in a plane nothing depends on the third axis. */
 function octaveAt(
-  { here, inverse, key }: Lattice,
+  lattice: Lattice,
   displacement: Vector,
   c: Constants,
   axes: number,
   isSparse: boolean,
 ) {
-  const [toKey, toGrain] = c.HASH_FACTORS;
+  const { here, inverse, key, origin } = lattice;
   const at = add(here, displacement, inverse).slice(0, axes);
   const sides = at.map((x, axis) => {
     const low = Math.floor(x);
-    const hash = (n: number) => {
-      const k = (key[axis] + Math.imul(n, c.AXIS_PRIMES[axis])) >>> 0;
-      return Math.imul(k ^ (k >>> c.HASH_SHIFT[0]), toKey);
-    };
-    return { hashes: [hash(low), hash(low + 1)], shares: [1 - x + low, x - low] };
+    const hash = (n: number) => scatter(key[axis] + Math.imul(n, c.AXIS_PRIMES[axis]), c);
+    return { low, hashes: [hash(low), hash(low + 1)], shares: [1 - x + low, x - low] };
   });
   let sum = 0;
   for (let corner = 0; corner < 2 ** axes; corner += 1) {
     const side = (axis: number) => (corner >> axis) & 1;
     const hash = sides.reduce((all, { hashes }, axis) => all ^ hashes[side(axis)], 0);
     const share = sides.reduce((all, { shares }, axis) => all * shares[side(axis)], 1);
-    const grain = Math.imul(hash, toGrain);
-    sum += share * (isSparse ? sparse(grain, c) : grain);
+    const cell = sides.map(({ low }, axis) => origin[axis] + low + side(axis));
+    const grain = isSparse
+      ? sparseGrain(cell, lattice, c)
+      : Math.imul(hash, c.HASH_FACTORS[1]);
+    sum += share * grain;
   }
   const spread = (all: number, { shares: [a, b] }: (typeof sides)[0]) => all * (1 - 2 * a * b);
   return sum / Math.sqrt(sides.reduce(spread, 1) * c.GRAIN_VARIANCE[0]);

@@ -61,17 +61,17 @@ const uint FLOWTEX_SEED_PRIME = 0x85ebca6bu;
 const uint FLOWTEX_HASH_SHIFT = 15u;
 const uvec2 FLOWTEX_HASH_FACTORS = uvec2(0x2c1b3c6du, 0x297a2d39u);
 const float FLOWTEX_MOST_GRAIN = 2147483648.0; // 2^31, the largest value of a grain
-// Streaklets: the share of grains that are bright, and what they and the others have in units of the
-// largest value of a dense one, so that mean and variance are the same.
-const float FLOWTEX_SPARSE_SHARE = 0.008;
-const float FLOWTEX_SPARSE_HIGH = 6.429101;
-const float FLOWTEX_SPARSE_LOW = 0.05184759;
-// In motion a bright grain is a dash: its share of a turn, the value of its head, less what all
-// have, and the rounds of phases of the values that are bright.
+// Streaklets: in every other block of two to the power of so many grains, one is bright.
+const uint FLOWTEX_BLOCK_BITS = 6u;
+// What bright grains and the others have in units of the largest value of a dense one, so that mean
+// and variance are the same.
+const float FLOWTEX_SPARSE_HIGH = 6.506407;
+const float FLOWTEX_SPARSE_LOW = 0.05123155;
+// In motion a bright grain is a dash: its share of a turn, the value of its head, and less what all
+// have.
 const float FLOWTEX_DASH_SHARE = 0.4;
-const float FLOWTEX_DASH_HIGH = 17.698921;
-const float FLOWTEX_DASH_LOW = 0.02831827;
-const float FLOWTEX_DASH_PHASES = 256.0;
+const float FLOWTEX_DASH_HIGH = 17.909544;
+const float FLOWTEX_DASH_LOW = 0.02798366;
 // Their sides are as long as this over the tangent of the angle to paths half a side's length beside.
 const float FLOWTEX_TOGETHER = 0.5;
 const float FLOWTEX_GRAIN_VARIANCE = 1.5372286728091292e18; // a third of its square

@@ -15,6 +15,10 @@ struct FlowtexLattice
   vec3 here;     // the fragment, in cells from the lattice point nearest to the origin
   float inverse; // cells by length
   uvec3 key;     // hash of that lattice point, the octave and the seed, by axis
+#ifdef FLOWTEX_SPARSE
+  uvec3 origin;  // that lattice point
+  uint salt;     // hash of the octave and the seed
+#endif
 };
 
 // ``turn`` is how often the noise there is that of the other end of a map around the Earth.
@@ -34,8 +38,13 @@ FlowtexLattice flowtexLattice(vec3 position, int octave, float turn)
   ivec3 origin = finest >> doublings;
   vec3 rest = (vec3(finest - (origin << doublings)) + left) * shrink;
   uvec3 key = uvec3(origin) * FLOWTEX_AXIS_PRIMES;
-  key.x += uint(octave) * FLOWTEX_OCTAVE_PRIME + uint(u_seed) * FLOWTEX_SEED_PRIME;
+  uint salt = uint(octave) * FLOWTEX_OCTAVE_PRIME + uint(u_seed) * FLOWTEX_SEED_PRIME;
+  key.x += salt;
+#ifdef FLOWTEX_SPARSE
+  return FlowtexLattice(position * inverse + rest, inverse, key, uvec3(origin), salt);
+#else
   return FlowtexLattice(position * inverse + rest, inverse, key);
+#endif
 }
 
 // Motion of the grains at a fragment: two rates, and how far it is from one to the other.
@@ -55,40 +64,76 @@ uvec3 flowtexScatter(uvec3 key)
   return (key ^ (key >> FLOWTEX_HASH_SHIFT)) * FLOWTEX_HASH_FACTORS.x;
 }
 
+// The corners of a cell along the first two axes, from what the axes have at its lower and upper end.
+uvec4 flowtexCorners(uvec3 low, uvec3 high)
+{
+  return uvec4(low.x, high.x, low.x, high.x) ^ uvec4(low.yy, high.yy);
+}
+
 #ifdef FLOWTEX_SPARSE
-// Which grains are bright.
-vec4 flowtexBright(vec4 grains)
+// Where grains are bright, so that streaks lie at even distances: one in a block, at random, and in every
+// other block, like the black squares of a chessboard.
+struct FlowtexBlocks
 {
-  return step(vec4((1.0 - 2.0 * FLOWTEX_SPARSE_SHARE) * FLOWTEX_MOST_GRAIN), grains);
-}
+  uvec3 hash;  // of the block, by axis
+  uvec3 place; // number of the grain in its block, and a bit for the colour of the square, by axis
+};
 
-// Values of bright grains that come once in a turn, and leave a tail.
-vec4 flowtexDash(vec4 grains, float phases, float turn)
+FlowtexBlocks flowtexBlocks(uvec3 cell, uint salt)
 {
-  vec4 late = fract(grains * (phases * FLOWTEX_DASH_PHASES) + turn) / FLOWTEX_DASH_SHARE;
-  return flowtexBright(grains) * max(1.0 - late, 0.0) * FLOWTEX_DASH_HIGH - FLOWTEX_DASH_LOW;
-}
+#ifdef FLOWTEX_PLANAR
+  const uint bits = FLOWTEX_BLOCK_BITS / 2u;
+#else
+  const uint bits = FLOWTEX_BLOCK_BITS / 3u;
 #endif
+  uvec3 block = cell >> bits;
+  uvec3 key = block * FLOWTEX_AXIS_PRIMES;
+  key.x += salt;
+  uvec3 place = (cell & ((1u << bits) - 1u)) << uvec3(0u, bits, 2u * bits);
+  uvec3 colour = block & 1u;
+  colour.x ^= salt >> 31u;
+  return FlowtexBlocks(flowtexScatter(key), place | (colour << FLOWTEX_BLOCK_BITS));
+}
 
+// Which of four grains are bright.
+vec4 flowtexBright(uvec4 hash, uvec4 place)
+{
+  return vec4(equal((hash * FLOWTEX_HASH_FACTORS.y) >> (32u - FLOWTEX_BLOCK_BITS), place));
+}
+
+// Values of grains that are bright, or not, once in a turn, and leave a tail.
+vec4 flowtexDash(vec4 bright, vec4 grains, float phases, float turn)
+{
+  vec4 late = fract(grains * phases + turn) / FLOWTEX_DASH_SHARE;
+  return bright * max(1.0 - late, 0.0) * FLOWTEX_DASH_HIGH - FLOWTEX_DASH_LOW;
+}
+
+// Values of four lattice points from their scattered keys, and which are bright.
+vec4 flowtexGrains(uvec4 key, vec2 turns, vec4 bright)
+{
+#ifdef FLOWTEX_MOVING
+  vec4 grains = vec4(ivec4(key * FLOWTEX_HASH_FACTORS.y));
+  vec4 slow = flowtexDash(bright, grains, flowtexMotion.phases.x, turns.x);
+  vec4 fast = flowtexDash(bright, grains, flowtexMotion.phases.y, turns.y);
+  return slow * flowtexMotion.shares.x + fast * flowtexMotion.shares.y;
+#else
+  return FLOWTEX_MOST_GRAIN * mix(vec4(-FLOWTEX_SPARSE_LOW), vec4(FLOWTEX_SPARSE_HIGH), bright);
+#endif
+}
+#else
 // Values of four lattice points from their scattered keys, even over all whole numbers with a sign
-// at every moment, or sparse. In motion each is a mixture of two waves with different phases.
+// at every moment. In motion each is a mixture of two waves with different phases.
 vec4 flowtexGrains(uvec4 key, vec2 turns)
 {
   vec4 grains = vec4(ivec4(key * FLOWTEX_HASH_FACTORS.y));
-#if defined(FLOWTEX_MOVING) && defined(FLOWTEX_SPARSE)
-  vec4 slow = flowtexDash(grains, flowtexMotion.phases.x, turns.x);
-  vec4 fast = flowtexDash(grains, flowtexMotion.phases.y, turns.y);
-  grains = slow * flowtexMotion.shares.x + fast * flowtexMotion.shares.y;
-#elif defined(FLOWTEX_MOVING)
+#ifdef FLOWTEX_MOVING
   vec4 slow = abs(fract(grains * flowtexMotion.phases.x + turns.x) * 4.0 - 2.0) - 1.0;
   vec4 fast = abs(fract(grains * flowtexMotion.phases.y + turns.y) * 4.0 - 2.0) - 1.0;
   grains = slow * flowtexMotion.shares.x + fast * flowtexMotion.shares.y;
-#elif defined(FLOWTEX_SPARSE)
-  grains = FLOWTEX_MOST_GRAIN
-    * mix(vec4(-FLOWTEX_SPARSE_LOW), vec4(FLOWTEX_SPARSE_HIGH), flowtexBright(grains));
 #endif
   return grains;
 }
+#endif
 
 // One octave at a displacement, with the variance of 1 everywhere between the lattice points.
 //
@@ -100,16 +145,34 @@ float flowtexOctave(FlowtexLattice lattice, vec3 displacement, vec2 turns)
   vec3 base = floor(q);
   vec3 w = q - base;
   vec3 spread = 1.0 - 2.0 * w * (1.0 - w);
-  uvec3 key = lattice.key + uvec3(ivec3(base)) * FLOWTEX_AXIS_PRIMES;
+  uvec3 cell = uvec3(ivec3(base));
+  uvec3 key = lattice.key + cell * FLOWTEX_AXIS_PRIMES;
   uvec3 low = flowtexScatter(key);
   uvec3 high = flowtexScatter(key + FLOWTEX_AXIS_PRIMES);
-  uvec4 corners = uvec4(low.x, high.x, low.x, high.x) ^ uvec4(low.yy, high.yy);
+  uvec4 corners = flowtexCorners(low, high);
+#ifdef FLOWTEX_SPARSE
+  FlowtexBlocks near = flowtexBlocks(lattice.origin + cell, lattice.salt);
+  FlowtexBlocks far = flowtexBlocks(lattice.origin + cell + 1u, lattice.salt);
+  uvec4 hash = flowtexCorners(near.hash, far.hash);
+  uvec4 place = flowtexCorners(near.place, far.place);
+#endif
 #ifdef FLOWTEX_PLANAR
-  vec4 grains = flowtexGrains(corners, turns);
   float variance = spread.x * spread.y;
+#ifdef FLOWTEX_SPARSE
+  vec4 grains = flowtexGrains(corners, turns, flowtexBright(hash, place));
 #else
-  vec4 grains = mix(flowtexGrains(corners ^ low.z, turns), flowtexGrains(corners ^ high.z, turns), w.z);
+  vec4 grains = flowtexGrains(corners, turns);
+#endif
+#else
   float variance = spread.x * spread.y * spread.z;
+#ifdef FLOWTEX_SPARSE
+  vec4 below = flowtexGrains(corners ^ low.z, turns, flowtexBright(hash ^ near.hash.z, place ^ near.place.z));
+  vec4 above = flowtexGrains(corners ^ high.z, turns, flowtexBright(hash ^ far.hash.z, place ^ far.place.z));
+#else
+  vec4 below = flowtexGrains(corners ^ low.z, turns);
+  vec4 above = flowtexGrains(corners ^ high.z, turns);
+#endif
+  vec4 grains = mix(below, above, w.z);
 #endif
   vec2 rows = mix(grains.xz, grains.yw, w.x);
   return mix(rows.x, rows.y, w.y) * inversesqrt(variance * FLOWTEX_GRAIN_VARIANCE);

@@ -51,11 +51,21 @@ def velocity_of(field: FlowField, drawn: Picture) -> Floats:
     return np.stack(list(components), axis=-1).reshape(*drawn.covered.shape, 3)
 
 
-@pytest.mark.parametrize(("make", "zoom"), [(gyre, 1), (gyre, 1024), (swinging, 32)])
-def test_a_still_tells_which_way_the_flow_goes(make: Callable[[], FlowField], zoom: float) -> None:
+@pytest.mark.parametrize(
+    ("make", "zoom", "least"),
+    [
+        (gyre, 1, 0.9),  # rings around the centres have no head
+        (gyre, 4, 0.99),
+        (gyre, 1024, 0.99),
+        (swinging, 32, 0.95),
+    ],
+)
+def test_a_still_tells_which_way_the_flow_goes(
+    make: Callable[[], FlowField], zoom: float, least: float
+) -> None:
     field, drawn = make().at_step(0), still(make, zoom)
     velocity = velocity_of(field, drawn)
-    assert sense(drawn, velocity) > 0.95
+    assert sense(drawn, velocity) > least
     if zoom == 32:
         turned = FlowField.from_arrays(field.points, -field.velocity[0])
         assert sense(picture(turned, zoom), velocity) < 0.05
@@ -108,7 +118,7 @@ def test_a_field_without_a_sign_has_strokes_without_a_head() -> None:
     assert 0.2 < share < 0.8
 
 
-@pytest.mark.parametrize("seed", [41, 51, 64])  # whose grain at the source itself is bright
+@pytest.mark.parametrize("seed", [1344, 1927, 2368])  # whose grain at the source itself is bright
 def test_a_bright_grain_in_a_source_makes_no_disc(seed: int) -> None:
     scene = Scene(fountain(), Settings(texture="streaklets", seed=seed))
     camera = Camera((0.3125, 0.25, 5), (0.3125, 0.25, 0), (0, 1, 0), True, 0.15)

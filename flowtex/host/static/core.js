@@ -386,10 +386,10 @@ observers)observer.disconnect();this.observers.clear();for(let timer of this.tim
 function throttled(later,wait,call){let next=null,running=!1,run=()=>{if(running=next!==null,!next)return;let{value}=next;
 next=null,call(value),later(run,wait)};return value=>{next={value},running||run()}}function uniforms(header,settings,view){let{geometry,slices,constants}=header,s=settings,signFree=isSignFree(header),finest=2**
 (Math.floor(Math.log2(geometry.extent))-constants.noiseDoublings),w=view.eye[3],eye=toFrame(geometry.frame,subtract2(view.
-eye,scale2(geometry.center,w))),sparse2=isSparse(header,settings),chosen=sparse2?"ramp":s.kernel,kernel=signFree&&chosen===
+eye,scale2(geometry.center,w))),sparse=isSparse(header,settings),chosen=sparse?"ramp":s.kernel,kernel=signFree&&chosen===
 "ramp"?"hann":chosen;return{u_eye:[...subtract2(eye,scale2(view.anchor,w)),w],u_between:view.between,u_slicesSize:[geometry.
 columns.size,geometry.rows.size],u_deepest:geometry.levels,u_lags:slices.lags,u_lagCount:slices.lags.length,u_sides:s.two_sided||
-signFree||sparse2?slices.sides:1,u_unit:slices.unit,u_rateLayer:slices.count-1,u_cell:slices.cell,u_samples:isMoving(header,
+signFree||sparse?slices.sides:1,u_unit:slices.unit,u_rateLayer:slices.count-1,u_cell:slices.cell,u_samples:isMoving(header,
 settings,view.still)?2*s.samples-1:s.samples,u_spacing:s.spacing,u_grain:s.grain*view.density,u_kernel:constants.kernels.
 indexOf(kernel),u_lod:s.lod,u_contrast:s.contrast,u_strength:s.strength,u_even:isEven(header,settings),u_fade:signFree?0:
 s.fade,u_seed:s.seed,u_showLevel:s.show_level,u_fixed:s.fixed_grain,...motionUniforms(header,s,view),...noiseOrigin(header,
@@ -2352,15 +2352,18 @@ fromEntries(Array.from(lines,([,name,values])=>[name,values.split(",").map(value
 function latticeOf(point,octave,u,c){let isOdd=(octave&1)===1,cells=2**(octave>>1),inverse2=(isOdd?Math.SQRT1_2:1)/cells/
 Number(u.u_noiseFinest),finest=isOdd?u.u_noiseOriginOdd:u.u_noiseOriginEven,past=isOdd?u.u_noiseRestOdd:[0,0,0],origin=finest.
 map(n=>Math.floor(n/cells)),rest=finest.map((n,axis)=>(n-origin[axis]*cells+past[axis])/cells),key=origin.map((n,axis)=>Math.
-imul(n,c.AXIS_PRIMES[axis]));return key[0]+=Math.imul(octave,c.OCTAVE_PRIME[0])+Math.imul(Number(u.u_seed),c.SEED_PRIME[0]),
-{here:add(rest,point,inverse2),inverse:inverse2,key}}function sparse(even,c){let bright=even>=(1-2*c.SPARSE_SHARE[0])*c.
-MOST_GRAIN[0];return c.MOST_GRAIN[0]*(bright?c.SPARSE_HIGH[0]:-c.SPARSE_LOW[0])}function octaveAt({here,inverse:inverse2,
-key},displacement,c,axes,isSparse2){let[toKey,toGrain]=c.HASH_FACTORS,sides=add(here,displacement,inverse2).slice(0,axes).
-map((x,axis)=>{let low=Math.floor(x),hash=n=>{let k=key[axis]+Math.imul(n,c.AXIS_PRIMES[axis])>>>0;return Math.imul(k^k>>>
-c.HASH_SHIFT[0],toKey)};return{hashes:[hash(low),hash(low+1)],shares:[1-x+low,x-low]}}),sum=0;for(let corner=0;corner<2**
-axes;corner+=1){let side=axis=>corner>>axis&1,hash=sides.reduce((all,{hashes},axis)=>all^hashes[side(axis)],0),share=sides.
-reduce((all,{shares:shares2},axis)=>all*shares2[side(axis)],1),grain=Math.imul(hash,toGrain);sum+=share*(isSparse2?sparse(
-grain,c):grain)}let spread=(all,{shares:[a,b]})=>all*(1-2*a*b);return sum/Math.sqrt(sides.reduce(spread,1)*c.GRAIN_VARIANCE[0])}
+imul(n,c.AXIS_PRIMES[axis])),salt=Math.imul(octave,c.OCTAVE_PRIME[0])+Math.imul(Number(u.u_seed),c.SEED_PRIME[0]);return key[0]+=
+salt,{here:add(rest,point,inverse2),inverse:inverse2,key,origin,salt}}function scatter(key,c){let whole=key>>>0;return Math.
+imul(whole^whole>>>c.HASH_SHIFT[0],c.HASH_FACTORS[0])}function sparseGrain(cell,{salt},c){let[all]=c.BLOCK_BITS,bits=Math.
+floor(all/cell.length),hash=0,place=salt>>>31<<all;cell.forEach((n,axis)=>{let block=n>>>bits,key=Math.imul(block,c.AXIS_PRIMES[axis])+
+(axis===0?salt:0);hash^=scatter(key,c),place|=(n&2**bits-1)<<bits*axis,place^=(block&1)<<all});let isBright=Math.imul(hash,
+c.HASH_FACTORS[1])>>>32-all===place;return c.MOST_GRAIN[0]*(isBright?c.SPARSE_HIGH[0]:-c.SPARSE_LOW[0])}function octaveAt(lattice,displacement,c,axes,isSparse2){
+let{here,inverse:inverse2,key,origin}=lattice,sides=add(here,displacement,inverse2).slice(0,axes).map((x,axis)=>{let low=Math.
+floor(x),hash=n=>scatter(key[axis]+Math.imul(n,c.AXIS_PRIMES[axis]),c);return{low,hashes:[hash(low),hash(low+1)],shares:[
+1-x+low,x-low]}}),sum=0;for(let corner=0;corner<2**axes;corner+=1){let side=axis=>corner>>axis&1,hash=sides.reduce((all,{
+hashes},axis)=>all^hashes[side(axis)],0),share=sides.reduce((all,{shares:shares2},axis)=>all*shares2[side(axis)],1),cell=sides.
+map(({low},axis)=>origin[axis]+low+side(axis)),grain=isSparse2?sparseGrain(cell,lattice,c):Math.imul(hash,c.HASH_FACTORS[1]);
+sum+=share*grain}let spread=(all,{shares:[a,b]})=>all*(1-2*a*b);return sum/Math.sqrt(sides.reduce(spread,1)*c.GRAIN_VARIANCE[0])}
 function noiseAround(local,octave,isPlanar,isSparse2,u,c){let point=add(local,scale2(u.u_noiseOrigin,-1)),[fine,coarse]=[
 0,1].map(n=>latticeOf(point,octave+n,u,c)),axes=isPlanar?2:3;return displacement=>[octaveAt(fine,displacement,c,axes,isSparse2),
 octaveAt(coarse,displacement,c,axes,isSparse2)]}function kernelAt(side,t,parting,u,c){return u.u_kernel===c.KERNEL_BOX[0]?

@@ -29,6 +29,8 @@ class NoiseLattice:
     start: Floats  #: The fragments, (N, 3), in cells from the lattice point nearest to the origin.
     inverse: Floats  #: Cells by length, (N,).
     key: Hashes  #: Hash of that lattice point, the octave and the seed, by axis, (N, 3).
+    origin: Hashes  #: That lattice point, (N, 3), modulo 2^32.
+    salt: Hashes  #: Hash of the octave and the seed, (N,).
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,10 +57,12 @@ def noise_lattice(position: Floats, octave: Ints, values: Values) -> NoiseLattic
     finest = np.asarray(cells, dtype=np.int64)
     origin = finest >> doublings
     rest = (finest - (origin << doublings) + np.where(odd, values["u_noiseRestOdd"], 0.0)) * shrink
-    key = origin.astype(np.uint32) * const.AXIS_PRIMES
+    origin = origin.astype(np.uint32)
+    key = origin * const.AXIS_PRIMES
     seed = np.array([values["u_seed"]], np.uint32) * const.SEED_PRIME
-    key[:, 0] += octave.astype(np.uint32) * const.OCTAVE_PRIME + seed
-    return NoiseLattice(position * inverse + rest, inverse[:, 0], key)
+    salt = octave.astype(np.uint32) * const.OCTAVE_PRIME + seed
+    key[:, 0] += salt
+    return NoiseLattice(position * inverse + rest, inverse[:, 0], key, origin, salt)
 
 
 def scatter(key: Hashes) -> Hashes:
@@ -66,35 +70,58 @@ def scatter(key: Hashes) -> Hashes:
     return np.asarray((key ^ (key >> const.HASH_SHIFT)) * const.HASH_FACTORS[0], np.uint32)
 
 
-def grains(key: Hashes, motion: Motion | None, *, sparse: bool) -> Floats:
-    """Values of lattice points from their scattered keys (N, 4), even over all signed numbers."""
+def grains(key: Hashes, motion: Motion | None, shine: Bools | None = None) -> Floats:
+    """Values of lattice points from their scattered keys (N, 4), even over all signed numbers.
+
+    For streaklets ``shine`` (N, 4) says which are bright, and the others are all the same.
+    """
     values = (key * const.HASH_FACTORS[1]).view(np.int32).astype(float)
     if motion is None:
-        if sparse:
-            low, high = -const.SPARSE_LOW, const.SPARSE_HIGH
-            values = const.MOST_GRAIN * np.where(_bright(values), high, low)
+        if shine is not None:
+            values = const.MOST_GRAIN * np.where(shine, const.SPARSE_HIGH, -const.SPARSE_LOW)
         return np.asarray(values)
-    wave = _dash if sparse else _triangle
-    slow, fast = (
-        wave(values, motion.phases[:, k, None], motion.clock[:, k, None]) for k in range(2)
-    )
-    return np.asarray(slow * motion.shares[:, :1] + fast * motion.shares[:, 1:])
+    waves = []
+    for k in range(2):
+        turn = values * motion.phases[:, k, None] + motion.clock[:, k, None]
+        turn -= np.floor(turn)
+        if shine is None:
+            waves.append(_triangle(turn))
+        else:
+            waves.append(_dash(turn, shine))
+    return np.asarray(waves[0] * motion.shares[:, :1] + waves[1] * motion.shares[:, 1:])
 
 
-def _bright(values: Floats) -> Bools:
-    return np.asarray(values >= (1.0 - 2.0 * const.SPARSE_SHARE) * const.MOST_GRAIN)
+def block_codes(cell: Hashes, salt: Hashes, *, planar: bool) -> tuple[Hashes, Hashes]:
+    """Hashes of the blocks of lattice points (N, 3), and places of the points there, by axis."""
+    bits = const.BLOCK_BITS // (2 if planar else 3)
+    block = cell >> bits
+    key = block * const.AXIS_PRIMES
+    key[:, 0] += salt
+    place = (cell & (2**bits - 1)) << (bits * np.arange(3, dtype=np.uint32))
+    # Every other block counts, like the black squares of a chessboard.
+    colour = block & 1
+    colour[:, 0] ^= salt >> 31
+    return scatter(key), place | (colour << const.BLOCK_BITS)
 
 
-def _dash(values: Floats, phases: Floats, turn: Floats) -> Floats:
-    turn = values * (phases * const.DASH_PHASES) + turn
-    late = (turn - np.floor(turn)) / const.DASH_SHARE
-    head = const.DASH_HIGH * np.maximum(1.0 - late, 0.0)
-    return np.asarray(_bright(values) * head - const.DASH_LOW)
+def bright(block: Hashes, place: Hashes) -> Bools:
+    """Return which lattice points are bright, one in a block, from the codes of all axes."""
+    return np.asarray((block * const.HASH_FACTORS[1]) >> (32 - const.BLOCK_BITS) == place)
 
 
-def _triangle(values: Floats, phases: Floats, turn: Floats) -> Floats:
-    turn = values * phases + turn
-    return np.asarray(np.abs((turn - np.floor(turn)) * 4.0 - 2.0) - 1.0)
+def corners(low: Hashes, high: Hashes) -> Hashes:
+    """Combine codes (N, 3) by axis for the corners of cells, (N, 4), along the first two axes."""
+    x, y = (np.stack([low[:, n], high[:, n]], axis=-1) for n in range(2))
+    return (x[:, None, :] ^ y[:, :, None]).reshape(-1, 4)
+
+
+def _dash(turn: Floats, shine: Bools) -> Floats:
+    head = const.DASH_HIGH * np.maximum(1.0 - turn / const.DASH_SHARE, 0.0)
+    return np.asarray(shine * head - const.DASH_LOW)
+
+
+def _triangle(turn: Floats) -> Floats:
+    return np.asarray(np.abs(turn * 4.0 - 2.0) - 1.0)
 
 
 def octave(
@@ -110,19 +137,37 @@ def octave(
     base = np.floor(q)
     w = q - base
     spread = 1.0 - 2.0 * w * (1.0 - w)
-    key = lattice.key + base.astype(np.int64).astype(np.uint32) * const.AXIS_PRIMES
+    cell = base.astype(np.int64).astype(np.uint32)
+    key = lattice.key + cell * const.AXIS_PRIMES
     low, high = scatter(key), scatter(key + const.AXIS_PRIMES)
-    x, y = (np.stack([low[:, n], high[:, n]], axis=-1) for n in range(2))
-    corners = (x[:, None, :] ^ y[:, :, None]).reshape(-1, 4)
+    codes = corners(low, high)
+    shine: list[Bools | None] = [None, None]
+    if sparse:
+        shine = _shine(lattice, cell, planar=planar)
     if planar:
-        values, variance = grains(corners, motion, sparse=sparse), spread[:, :2].prod(axis=-1)
+        values = grains(codes, motion, shine[0])
+        variance = spread[:, :2].prod(axis=-1)
     else:
-        below, above = (grains(corners ^ z[:, 2:], motion, sparse=sparse) for z in (low, high))
-        values, variance = mix(below, above, w[:, 2:]), spread.prod(axis=-1)
+        below = grains(codes ^ low[:, 2:], motion, shine[0])
+        above = grains(codes ^ high[:, 2:], motion, shine[1])
+        values = mix(below, above, w[:, 2:])
+        variance = spread.prod(axis=-1)
     rows = mix(values[:, 0::2], values[:, 1::2], w[:, :1])
     return np.asarray(
         mix(rows[:, 0], rows[:, 1], w[:, 1]) / np.sqrt(variance * const.GRAIN_VARIANCE)
     )
+
+
+def _shine(lattice: NoiseLattice, cell: Hashes, *, planar: bool) -> list[Bools | None]:
+    """Return which corners of cells (N, 3) are bright, (N, 4) below and, in space, above."""
+    at = lattice.origin + cell
+    low = block_codes(at, lattice.salt, planar=planar)
+    high = block_codes(at + np.uint32(1), lattice.salt, planar=planar)
+    block = corners(low[0], high[0])
+    place = corners(low[1], high[1])
+    if planar:
+        return [bright(block, place), None]
+    return [bright(block ^ z[0][:, 2:], place ^ z[1][:, 2:]) for z in (low, high)]
 
 
 def mix(a: Floats, b: Floats, share: Floats | float) -> Floats:
