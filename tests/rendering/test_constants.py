@@ -23,6 +23,15 @@ def test_numbers_that_follow_from_others_do() -> None:
     assert pytest.approx(np.pi) == const.PI
     assert pytest.approx(np.sqrt(0.5)) == const.SQRT_HALF
     assert pytest.approx(const.MOST_GRAIN**2 / 3) == const.GRAIN_VARIANCE
+    share = 0.5**7  # of bright grains
+    others = const.SPARSE_LOW * (1.0 - share)
+    assert pytest.approx(const.SPARSE_HIGH * share, rel=1e-6) == others
+    squares = share * const.SPARSE_HIGH**2 + (1.0 - share) * const.SPARSE_LOW**2
+    assert pytest.approx(1.0 / 3.0, rel=1e-6) == squares
+    mean = 0.5 * const.DASH_SHARE * share * const.DASH_HIGH
+    assert pytest.approx(const.DASH_LOW, rel=1e-6) == mean
+    squares = const.DASH_SHARE * share * const.DASH_HIGH**2 / 3.0
+    assert pytest.approx(1.0 / 3.0, rel=1e-5) == squares - mean**2
     assert [f"KERNEL_{kernel.upper()}" for kernel in KERNELS] == NAMES[1:4]
     assert [getattr(const, name) for name in NAMES[1:4]] == [0, 1, 2]
 

@@ -21,11 +21,19 @@ VALUES: dict[str, Any] = {
 }
 
 
-def noise(position: Floats, level: int, *, planar: bool = True, motion: Any = None) -> Floats:
+def noise(
+    position: Floats,
+    level: int,
+    *,
+    planar: bool = True,
+    motion: Any = None,
+    sparse: bool = False,
+    seed: int = 0,
+) -> Floats:
     """One octave at positions (N, 3)."""
     levels = np.full(len(position), level)
-    found = noise_lattice(position, levels, VALUES)
-    return octave(found, np.zeros_like(position), motion, planar=planar)
+    found = noise_lattice(position, levels, VALUES | {"u_seed": seed})
+    return octave(found, np.zeros_like(position), motion, planar=planar, sparse=sparse)
 
 
 @pytest.mark.parametrize("level", [0, 1, 7])
@@ -66,6 +74,32 @@ def test_motion_keeps_mean_and_variance(rng: np.random.Generator, moment: float)
     values = noise(p, 0, motion=motion)
     assert values.var() == pytest.approx(1.0, abs=0.04)
     assert values.mean() == pytest.approx(0.0, abs=0.03)
+
+
+@pytest.mark.parametrize("seed", [0, 7])
+@pytest.mark.parametrize(("shape", "side"), [((64, 96, 1), 16), ((32, 32, 24), 8)])
+def test_each_part_has_as_many_bright_grains(
+    shape: tuple[int, int, int], side: int, seed: int
+) -> None:
+    points = np.moveaxis(np.indices(shape), 0, -1).reshape(-1, 3) - 32.0
+    planar = shape[2] == 1
+    values = noise(points, 0, planar=planar, sparse=True, seed=seed)
+    bright = (values > 1.0).reshape(shape)
+    parts = [range(0, n, side) for n in shape]
+    counts = np.add.reduceat(bright.astype(int), parts[0], axis=0)
+    counts = np.add.reduceat(counts, parts[1], axis=1)
+    counts = np.add.reduceat(counts, parts[2], axis=2)
+    grains = bright.size // counts.size
+    assert (counts == grains // 128).all()
+    # Places in a block are all used.
+    taken = np.unique(points[bright.ravel()] % (side // 2), axis=0)
+    assert len(taken) > 30
+
+
+def test_no_place_is_dark_for_all_seeds() -> None:
+    points = np.array([[0.0, 0.0, 0.0], [8.0, 0.0, 0.0]])
+    found = [noise(points, 0, sparse=True, seed=seed) > 1.0 for seed in range(500)]
+    assert np.any(found, axis=0).all()
 
 
 @pytest.mark.parametrize("apart", [0.3, 0.7, 1.0, 2.5])

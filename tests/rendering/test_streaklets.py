@@ -111,6 +111,15 @@ def test_streaklets_are_sparse_and_bright() -> None:
     assert not is_sparse(dense.textures, dense.settings)
 
 
+@pytest.mark.parametrize("zoom", [4.0, 4.76])  # of one octave, and between two
+def test_streaklets_lie_at_even_distances(zoom: float) -> None:
+    drawn = still(gyre, zoom)
+    assert drawn.covered.all()
+    inner = (slice(15, -15), slice(15, -15))
+    cloud = ndimage.gaussian_filter(drawn.value, 12)[inner].std() / drawn.value.std()
+    assert cloud < 0.08  # independent draws: 0.15 and more
+
+
 def test_a_field_without_a_sign_has_strokes_without_a_head() -> None:
     field = lines()
     drawn = picture(field, 1)
