@@ -129,7 +129,7 @@ def test_a_lit_surface_is_darker_aside(client: ClientPage) -> None:
     flat = np.hypot(p[:, 0], p[:, 1])
     normal = np.stack([*((1 - 1 / flat) * p[:, :2].T), p[:, 2]], axis=-1)
     normal /= np.linalg.norm(normal, axis=-1, keepdims=True)
-    light = np.minimum(0.3 + 0.8 * np.abs(normal @ -ASIDE.axes[2]), 1.0)
+    light = np.minimum(0.15 + np.abs(normal @ -ASIDE.axes[2]), 1.0)
     off = theirs[seen][:, 0] - 0.6 * 255 * light
     assert np.std(light) > 0.1
     # The facets of the torus hold its normals only nearly.

@@ -133,3 +133,17 @@ def test_another_surface_is_drawn_as_if_it_were_the_first(plotter: Any) -> None:
     before = shot(plotter)
     handle.settings.contrast = 0.2
     assert np.abs(shot(plotter) - before).max() > 10
+
+
+def test_a_lit_body_has_shadows(plotter: Any) -> None:
+    """Shadows are nearly as deep as those of PyVista, 2.6, where dark streaks would be lost."""
+    sphere = pv.Sphere(theta_resolution=24, phi_resolution=24)
+    sphere["velocity"] = np.cross(sphere.points, (0.0, 0.0, 1.0))
+    plotter.set_background("white")
+    plotter.enable_lightkit()
+    plotter.flowtex.add(sphere, scalars=False, strength=0.0)
+    plotter.render()
+    grey = np.asarray(plotter.screenshot(return_img=True))[..., :3].mean(axis=-1)
+    dark, bright = np.percentile(grey[grey < 250], [2, 98])
+    assert 1.9 < bright / dark < 2.6
+    assert dark > 60

@@ -81,7 +81,7 @@ def test_motion_keeps_mean_and_variance(rng: np.random.Generator, moment: float)
 def test_each_part_has_as_many_bright_grains(
     shape: tuple[int, int, int], side: int, seed: int
 ) -> None:
-    points = np.moveaxis(np.indices(shape), 0, -1).reshape(-1, 3) - 32.0
+    points: Floats = np.moveaxis(np.indices(shape), 0, -1).reshape(-1, 3).astype(float) - 32.0
     planar = shape[2] == 1
     values = noise(points, 0, planar=planar, sparse=True, seed=seed)
     bright = (values > 1.0).reshape(shape)
