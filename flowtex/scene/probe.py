@@ -171,6 +171,8 @@ def probe(
     state = ViewState(between=between, still=True, clock=clock)
     state = view_state(view.textures, camera, state, (before, after))
     values = uniforms(view.textures, view.settings, state)
+    # The local mean of a picture is unknown at a point: the sum alone, as documented.
+    values["u_even"] = False
     field_values = values_at(view.field, place.index, view.time)
     textures = view.textures
     if (drawn := textures.geometry.field) is not view.field:
