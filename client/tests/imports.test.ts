@@ -22,7 +22,7 @@ const LAYERS = [
   "earthlayer arrows",
   "bodies",
   "marks",
-  "scene",
+  "scene even",
   "places",
   "tiles",
   "pointpath pixelsum progressive",
