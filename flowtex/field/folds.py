@@ -37,6 +37,12 @@ FOLDED = (
     f"{MOST_NODES:,} nodes, or FlowField.from_triangles"
 )
 
+#: How a folded mesh is drawn by what needs a grid.
+ROWS_OF_FOLDS = (
+    "A StructuredGrid that is folded is read as triangles; "
+    "FlowField.from_arrays(points, velocity) keeps its rows and columns"
+)
+
 
 def mixes_at_folds(field: Any) -> bool:
     """Return whether a field on a grid mixes the values of faces at folds."""

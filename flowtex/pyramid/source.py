@@ -16,6 +16,7 @@ from flowtex._util.arrays import norm
 from flowtex.errors import FieldError, import_extra
 from flowtex.field import FlowField
 from flowtex.field.field_arrays import FieldArrays
+from flowtex.field.folds import ROWS_OF_FOLDS
 from flowtex.field.options import FieldOptions
 from flowtex.field.steps import LazySteps, Nodes, typical_steps
 from flowtex.field.uncertainty import with_uncertainty
@@ -59,7 +60,8 @@ class FieldSource:
         if field.triangles is not None or field.sign_free:
             kind = "on triangles" if field.triangles is not None else "sign-free"
             raise FieldError(
-                f"the field is {kind}; expected one with signs on a structured surface"
+                f"the field is {kind}; expected one with signs on a structured surface. "
+                f"{ROWS_OF_FOLDS}"
             )
         self.field, self.shape = field, field.shape
         self.scalars = {name: len(steps) for name, steps in field.scalars.items()}

@@ -36,6 +36,7 @@ from flowtex._util.forks import renew_after_fork
 from flowtex._util.progress import pool
 from flowtex.errors import FieldError
 from flowtex.field import FlowField
+from flowtex.field.folds import ROWS_OF_FOLDS
 from flowtex.field.triangles.triangle_surface import TriangleSurface
 from flowtex.field.uncertainty import unknown_share
 from flowtex.field.validation import three_components
@@ -318,7 +319,7 @@ def check_noise(field: FlowField, noise: str) -> None:
     if noise != "procedural" and field.triangles is not None:
         raise SettingsError(
             f"noise is {noise!r}, which needs rows and columns, but this surface consists of "
-            "triangles; expected noise='procedural'"
+            f"triangles; expected noise='procedural'. {ROWS_OF_FOLDS}"
         )
 
 
