@@ -7,6 +7,7 @@ vec2 flowtexLookup(vec3 displacement, float length_);
 float flowtexBlend(vec2 sums, float near);
 //#include common/path.glsl
 //#include common/cell.glsl
+//#include common/even_gain.glsl
 //#include common/texture.glsl
 
 uniform vec2 u_picture;      // width and height in pixels

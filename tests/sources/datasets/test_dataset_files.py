@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 import xarray as xr
 from earth_data import east_and_north, winds
-from lying_files import grib2
+from lying_files import grib
 
 from flowtex import FlowField
 from flowtex.errors import FieldError, Notice
@@ -134,7 +134,7 @@ def test_without_its_library_grib_names_the_remedy(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     (tmp_path / "cfgrib.py").write_text('raise RuntimeError("Cannot find the ecCodes library")')
-    (tmp_path / "a.grib").write_bytes(grib2(4))
+    (tmp_path / "a.grib").write_bytes(grib(2))
     monkeypatch.syspath_prepend(tmp_path)
     monkeypatch.delitem(sys.modules, "cfgrib", raising=False)
     with pytest.raises(FieldError, match=r"library ecCodes, which is missing .* conda-forge"):
