@@ -20,7 +20,7 @@ import sys
 import time
 import zlib
 from collections.abc import Callable, Iterator
-from dataclasses import replace
+from dataclasses import asdict, replace
 from functools import partial
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -45,7 +45,7 @@ HEADINGS = (
 #: What client/src/programs.ts has before a shader's text, and texture units of the samplers.
 PREAMBLE = "#version 300 es\nprecision highp float;\nprecision highp int;\n"
 UNITS = {"u_slices": 0, "u_cmap": 4, "u_shares": 5, "u_nodes": 7, "u_open": 9, "u_places": 10}
-UNITS["u_strides"] = 13
+UNITS |= {"u_strides": 13, "u_below": 14, "u_texture": 15, "u_source": 16, "u_means": 17}
 #: What stands for no value at a node.
 NO_VALUE = -1e9
 
@@ -79,7 +79,11 @@ class Drawing(NamedTuple):
 
 
 def drawing_of(view: Any, camera: Any, size: tuple[int, int], name: str = "") -> Drawing:
-    """Return what the client draws of a WebView: flat, steady, coloured, without perspective."""
+    """Return what the client draws of a WebView: flat, steady, coloured, without perspective.
+
+    Its texture is less its local mean.
+    """
+    from flowtex.rendering.even import EvenBlocks
     from flowtex.rendering.tile_choice import finer_part
     from flowtex.rendering.uniforms import ViewState, uniforms
     from flowtex.textures.tiles.blocks import BLOCK_CELLS
@@ -132,10 +136,13 @@ def drawing_of(view: Any, camera: Any, size: tuple[int, int], name: str = "") ->
     near = any(values["near"] for values in layers[pyramid is not None :] or layers)
     variant = {"FLOWTEX_MOVING": layers[0]["moving"], "FLOWTEX_CELLS": near}
     defines = "".join(f"#define {define}\n" for define, is_on in variant.items() if is_on)
-    shaders = {k: header["shaders"][k] for k in ("fullVertex", "trace", "layers")}
+    names = ("fullVertex", "trace", "layers", "even", "colour")
+    shaders = {name: header["shaders"][name] for name in names}
     shaders |= {k: defines + header["shaders"][k] for k in ("vertex", "place", "fragment")}
     about = {"name": name, "size": size, "samples": settings.samples, "layers": layers}
     about |= {"shaders": shaders, "background": ground}
+    width, height = size
+    about["even"] = asdict(EvenBlocks.of(settings.grain, (0, width, 0, height)))
     return Drawing(about, arrays)
 
 
@@ -308,31 +315,73 @@ class Tracing:
         self._context.enable(self._context.DEPTH_TEST)
 
 
+class Means:
+    """The local means of a texture, as client/src/even.ts draws them in two passes."""
+
+    def __init__(self, context: Any, shaders: dict[str, str], blocks: dict[str, Any]) -> None:
+        self._program = context.program(
+            vertex_shader=PREAMBLE + shaders["fullVertex"],
+            fragment_shader=PREAMBLE + shaders["even"],
+        )
+        self._screen = context.vertex_array(self._program, [])
+        columns, rows = blocks["size"]
+        (right, high), (left, low) = blocks["end"], blocks["first"]
+        self._across, self._upward = right - left, high - low
+        self._by_row = context.texture((columns, self._upward), 1, dtype="f4")
+        self.texture = context.texture((columns, rows), 1, dtype="f4")
+        for texture in (self._by_row, self.texture):
+            texture.filter = context.NEAREST, context.NEAREST
+        self._frames = [context.framebuffer([t]) for t in (self._by_row, self.texture)]
+        self._first = left, low
+        self._program["u_source"].value = UNITS["u_source"]
+        for name in ("side", "variance", "reach"):
+            self._program[f"u_{name}"].value = blocks[name]
+
+    def draw(self, texture: Any) -> None:
+        """Draw the means along the rows of a texture, and of these along the columns."""
+        self._draw(0, texture, self._first, (1, 0), self._across)
+        self._draw(1, self._by_row, (0, 0), (0, 1), self._upward)
+
+    def _draw(
+        self, frame: int, source: Any, first: Any, along: tuple[int, int], count: int
+    ) -> None:
+        self._frames[frame].use()
+        source.use(UNITS["u_source"])
+        self._program["u_from"].value = first
+        self._program["u_along"].value = along
+        self._program["u_count"].value = count
+        self._screen.render(vertices=3)
+
+
 class Picture:
     """A picture whose arrays are on the card."""
 
     def __init__(self, context: Any, drawing: Drawing) -> None:
         self._context, (self._about, self._arrays) = context, drawing
         shaders, size = self._about["shaders"], tuple(self._about["size"])
-        self._place, self._sum = (
+        texts = (("vertex", "place"), ("fullVertex", "fragment"), ("fullVertex", "colour"))
+        #: Of the places, of the sums and of the colours.
+        self._programs = [
             context.program(
                 vertex_shader=PREAMBLE + shaders[vertex],
                 fragment_shader=PREAMBLE + shaders[fragment],
             )
-            for vertex, fragment in (("vertex", "place"), ("fullVertex", "fragment"))
-        )
-        self._triangles, self._screen = (
-            context.vertex_array(p, []) for p in (self._place, self._sum)
-        )
-        self._target, places = (
-            context.simple_framebuffer(size),
-            context.texture(size, 4, dtype="u4"),
-        )
+            for vertex, fragment in texts
+        ]
+        self._triangles, *self._screens = (context.vertex_array(p, []) for p in self._programs)
+        self._target = context.simple_framebuffer(size)
+        places = context.texture(size, 4, dtype="u4")
+        below, self._texture = (context.texture(size, 4, dtype=of) for of in ("f1", "f2"))
         self._places = context.framebuffer([places], context.depth_renderbuffer(size))
+        self._sums = context.framebuffer([below, self._texture])
+        self._means = Means(context, shaders, self._about["even"])
         colours, strides = self._arrays["cmap"], self._arrays["strides"]
         constant = {
             "u_cmap": context.texture((len(colours), 1), 4, colours.tobytes(), dtype="f4"),
             "u_places": places,
+            "u_below": below,
+            "u_texture": self._texture,
+            "u_means": self._means.texture,
             "u_open": context.texture((1, 1), 1, b"\1", alignment=1, dtype="u1"),
             "u_strides": context.texture(
                 strides.shape[::-1], 1, strides.tobytes(), alignment=1, dtype="u1"
@@ -361,10 +410,9 @@ class Picture:
         shares = context.texture((columns, rows), 2, own["shares"].tobytes(), dtype="f4")
         nodes = context.texture_array((columns, rows, 1), 3, own["position"].tobytes(), dtype="f4")
         shares.filter = nodes.filter = context.NEAREST, context.NEAREST
-        for name, texture in self._constant.items():
-            texture.use(UNITS[name])
-        given = uniforms | UNITS | {"u_layer": n + 1}
-        values = [self._values(program, given) for program in (self._place, self._sum)]
+        blocks = {f"u_{name}": self._about["even"][name] for name in ("first", "side")}
+        given = uniforms | UNITS | blocks | {"u_layer": n + 1}
+        values = [self._values(program, given) for program in self._programs]
         return own["blocks"], {"u_slices": slices, "u_shares": shares, "u_nodes": nodes}, values
 
     @staticmethod
@@ -385,7 +433,10 @@ class Picture:
                 self._written[program, uniform.name] = data
 
     def draw(self) -> None:
-        """Draw a frame: the places of all layers, and then their colours."""
+        """Draw a frame: the places of all layers, their sums, local means, and then colours."""
+        # The passes that trace have other textures there.
+        for name, texture in self._constant.items():
+            texture.use(UNITS[name])
         self._context.enable(self._context.DEPTH_TEST)
         self._places.use()
         self._places.clear()
@@ -396,16 +447,24 @@ class Picture:
             cells = int(self._about["layers"][0]["u_blockCells"])
             for x, y in blocks:
                 across, upward = min(cells, columns - 1 - x), min(cells, rows - 1 - y)
-                self._place["u_block"].value = float(x), float(y), 0.0, float(across)
+                self._programs[0]["u_block"].value = float(x), float(y), 0.0, float(across)
                 self._triangles.render(vertices=6 * int(across) * int(upward))
         self._context.disable(self._context.DEPTH_TEST)
-        self._target.use()
-        self._target.clear(*self._about["background"], 1.0)
+        self._sums.use()
+        self._sums.clear()
         for _, textures, values in self._layers:
             for name, texture in textures.items():
                 texture.use(UNITS[name])
-            self._set(1, values[1])
-            self._screen.render(vertices=3)
+            self._draw_pixels(1, values)
+        self._means.draw(self._texture)
+        self._target.use()
+        self._target.clear(*self._about["background"], 1.0)
+        for _, _, values in self._layers:
+            self._draw_pixels(2, values)
+
+    def _draw_pixels(self, program: int, values: Any) -> None:
+        self._set(program, values[program])
+        self._screens[program - 1].render(vertices=3)
 
     def pixels(self) -> NDArray[Any]:
         """Draw a frame and return it, (H, W, 3)."""
