@@ -164,7 +164,7 @@ def test_two_views_move_as_one_and_tell_their_difference(
     page = client.page
     both = f"() => {PAIR}.length === 2 && {PAIR}.every((viewer) => viewer.sharp)"
     page.wait_for_function(both)
-    assert page.locator(".title").all_inner_texts() == ["Strength: 0.8", "Strength: 0"]
+    assert page.locator(".title").all_inner_texts() == ["Strength: 0.65", "Strength: 0"]
     assert page.locator(".bar:visible").count() == 1
     page.evaluate(
         """() => {
