@@ -2,7 +2,8 @@
 
 Sections are ``zoom`` (streaks and grain from the whole surface to a thousandth of it, beside
 rlic on the image's own grid), ``aliasing`` (against 16 samples a pixel), ``camera`` (texture that
-sticks to the surface, beside VTK's Surface LIC), ``popping`` (a slow zoom), ``motion`` and
+sticks to the surface, beside VTK's Surface LIC), ``cloud`` (evenness on the surfaces of
+surfaces.py, beside Surface LIC), ``popping`` (a slow zoom), ``motion`` and
 ``vortices`` (frames carried by the flow), and ``seam`` (joined lines of nodes; needs
 ``FLOWTEX_DATA``). All with the settings' defaults. ``--json FILE`` keeps the figures.
 
@@ -23,6 +24,7 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 from scenes import Stage, gyre_field, gyre_view, vortex_view
+from scipy.ndimage import gaussian_filter
 from seams import across_lines, seams
 
 import flowtex
@@ -41,6 +43,8 @@ JUDGE = SimpleNamespace(
     aliasing=quality.aliasing,
     carried=quality.sticking,
 )
+#: Deviation in pixels of the blur that leaves the clouds of a picture, and nodes of its surfaces.
+CLOUD_PIXELS, CLOUD_NODES = 12.0, 20_000
 #: Seconds from one frame of an animation to the next.
 FRAME = 1 / 30
 
@@ -66,10 +70,54 @@ def _all(picture: Any, view: Any) -> dict[str, float]:
     return {
         **figures,
         **JUDGE.grain(picture, view.u, view.v, view.mask),
+        "cloud": _cloud(picture, view.mask),
         "deviation": float(np.asarray(picture, float).mean(axis=-1)[view.mask].std())
         if np.ndim(picture) == 3
         else float(picture[view.mask].std()),
     }
+
+
+def _cloud(picture: Any, mask: Any) -> float:
+    """Deviation of a blurred picture over that of the picture, of the pixels of a mask alone."""
+    grey = np.asarray(picture, float)
+    if grey.ndim == 3:
+        grey = grey[..., :3].mean(axis=-1)
+    detail = np.where(mask, grey - grey[mask].mean(), 0.0)
+    share = gaussian_filter(mask.astype(float), CLOUD_PIXELS)
+    blurred = gaussian_filter(detail, CLOUD_PIXELS)[mask] / share[mask]
+    return float(blurred.std() / detail[mask].std())
+
+
+def clouds() -> Figures:
+    """Evenness on planes and bodies, without light; Surface LIC at the same views."""
+    import pyvista as pv
+    from peers import CASES, LIC, OURS
+    from surfaces import GRIDS, TRIANGLES, surface_view
+
+    from flowtex.rendering.camera import read_camera
+
+    found: Figures = {}
+    size = (640, 480)
+    for name, make in (GRIDS | TRIANGLES).items():
+        mesh = make(CLOUD_NODES)
+        for case in (OURS, LIC):
+            plotter: Any = pv.Plotter(off_screen=True, window_size=list(size))
+            plotter.set_background("white")
+            CASES[case](plotter, mesh)
+            for actor in plotter.renderer.GetActors():  # shadows are no clouds
+                actor.GetProperty().SetAmbient(1.0)
+                actor.GetProperty().SetDiffuse(0.0)
+            flat = np.ptp(mesh.points[:, 2]) == 0
+            plotter.camera_position = "xy" if flat else "iso"
+            plotter.reset_camera(render=False)
+            plotter.render()
+            picture = np.asarray(plotter.screenshot(return_img=True))
+            camera = read_camera(plotter.camera)
+            view = surface_view(flowtex.FlowField.from_pyvista(mesh), camera, size)
+            plotter.close()
+            streaks = JUDGE.streaks(picture, view.u, view.v, view.mask)
+            found[f"{name}, {case}"] = {**streaks, "cloud": _cloud(picture, view.mask)}
+    return found
 
 
 def aliased() -> Figures:
@@ -219,6 +267,7 @@ SECTIONS = {
     "zoom": zoom,
     "aliasing": aliased,
     "camera": camera,
+    "cloud": clouds,
     "popping": popping,
     "motion": streaming,
     "vortices": vortices,
