@@ -25,16 +25,22 @@ float flowtexBlurred(ivec2 texel)
   ivec2 aside = u_from + texel * (1 - u_along);
   int block = texel.x * u_along.x + texel.y * u_along.y;
   float middle = (float(block) - 0.5) * float(u_side) - 0.5;
+  int first = int(ceil(middle - u_reach));
   int last = int(floor(middle + u_reach));
+  // A weight of the bell is the one before times a ratio, which has a constant ratio itself.
+  float away = float(first) - middle;
+  float weight = exp(-0.5 * away * away / u_variance);
+  float ratio = exp(-(away + 0.5) / u_variance);
+  float bend = exp(-1.0 / u_variance);
   float sum = 0.0;
   float weights = 0.0;
-  for (int n = int(ceil(middle - u_reach)); n <= last; ++n)
+  for (int n = first; n <= last; ++n)
   {
-    float away = float(n) - middle;
-    float weight = exp(-0.5 * away * away / u_variance);
     weights += weight;
     if (n >= 0 && n < u_count)
       sum += weight * texelFetch(u_source, aside + n * u_along, 0).r;
+    weight *= ratio;
+    ratio *= bend;
   }
   return sum / weights;
 }
