@@ -58,6 +58,20 @@ def test_a_point_of_the_surface_is_found(
         assert np.abs(there - point).max() < 1e-9 * field.surface.extent
 
 
+def test_an_index_beyond_a_pole_is_on_its_far_side(rng: np.random.Generator) -> None:
+    surface = sphere().surface
+    # A path that goes over a pole ends there.
+    for j, i in rng.uniform([18.0, 0.0], [34.0, 36.0], (20, 2)):
+        point = surface_point(surface, (j, i))
+        nodes = surface_point(surface, (36.0 - j, i + 18.0))
+        assert point.interpolate(surface.points) == pytest.approx(
+            nodes.interpolate(surface.points), abs=1e-9
+        )
+        assert point.interpolate(surface.points) == pytest.approx(
+            surface.at(np.array([i, j])), abs=0.02
+        )
+
+
 def test_a_point_off_the_surface_has_no_index() -> None:
     plane, ball = flat(), sphere()
     assert locate(plane, (-0.5, 0.5)) is None

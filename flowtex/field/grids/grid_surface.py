@@ -214,11 +214,13 @@ class GridSurface(NodeSurface):
         return j, i
 
     def wrap(self, index: Floats) -> Floats:
-        """Fold positions in index space back into one period, (..., 2) as (i, j)."""
+        """Return positions in index space, (..., 2) as (i, j), within one period and the poles."""
         folded = index.copy()
+        if self.poles is not None:
+            folded = self.poles.fold(index.reshape(-1, 2).T).T.reshape(index.shape).copy()
         for component, axis in ((0, 1), (1, 0)):
             if self.periodic[axis]:
-                folded[..., component] = np.mod(index[..., component], self.shape[axis] - 1)
+                folded[..., component] = np.mod(folded[..., component], self.shape[axis] - 1)
         return folded
 
     def at(self, index: Floats) -> Floats:
