@@ -25,6 +25,8 @@ pytestmark = [
     pytest.mark.filterwarnings("default::DeprecationWarning"),
     pytest.mark.filterwarnings("default::PendingDeprecationWarning"),
     pytest.mark.filterwarnings("default::FutureWarning"),
+    # Eigenvectors of NumPy 2.5 are always complex, and python-control 0.10.2 makes them real.
+    pytest.mark.filterwarnings("default:Casting complex values:numpy.exceptions.ComplexWarning"),
 ]
 
 
