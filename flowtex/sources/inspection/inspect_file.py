@@ -189,6 +189,14 @@ def _check_sections(data: Data, place: int, end: int, label: str) -> None:
         raise FieldError(f"the sections of {label} do not match its length; the file is corrupt")
 
 
+def _check_latitude(latitude: float, label: str) -> None:
+    """Raise a FieldError for a latitude without its sign that is beyond a pole."""
+    if latitude > POLE:
+        raise FieldError(
+            f"{label} has the latitude {latitude:g}; expected -90 to 90: it is damaged"
+        )
+
+
 def _points(data: Data, at: int, edition: int, end: int, label: str) -> int:
     """Return the number of points of the largest grid of a message.
 
@@ -200,12 +208,8 @@ def _points(data: Data, at: int, edition: int, end: int, label: str) -> int:
         return int.from_bytes(data[begin : begin + count], "big")
 
     def check_latitudes(unit: int, count: int, *places: int) -> None:
-        for word in (number(begin, count) for begin in places):
-            latitude = (word & ~(1 << 8 * count - 1)) / unit
-            if latitude > POLE:
-                raise FieldError(
-                    f"{label} has the latitude {latitude:g}; expected -90 to 90: it is damaged"
-                )
+        for begin in places:
+            _check_latitude((number(begin, count) & ~(1 << 8 * count - 1)) / unit, label)
 
     place, most, count, bits = at + 16, 0, 0, 0
     if edition == 1:
