@@ -105,7 +105,7 @@ export class LocalMeans {
     this.targets = [0, 1].map(() => {
       const texture = graphics.counted(gl.createTexture());
       gl.bindTexture(gl.TEXTURE_2D, texture);
-      gl.texStorage2D(gl.TEXTURE_2D, 1, gl.R32F, wide, high);
+      gl.texStorage2D(gl.TEXTURE_2D, 1, gl.R16F, wide, high);
       gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MIN_FILTER, gl.NEAREST);
       gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MAG_FILTER, gl.NEAREST);
       const frame = graphics.counted(gl.createFramebuffer());

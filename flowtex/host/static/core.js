@@ -849,7 +849,7 @@ height),gl.drawArrays(gl.TRIANGLES,0,3)}bind(name,texture){let gl=this.graphics.
 indexOf(name)),gl.bindTexture(gl.TEXTURE_2D,texture),gl.activeTexture(gl.TEXTURE0+SAMPLERS.length)}fit(columns,rows){if(this.
 columns>=columns&&this.rows>=rows)return;let[wide,high]=[Math.max(columns,this.columns),Math.max(rows,this.rows)];this.dispose();
 let{graphics}=this,gl=graphics.context;this.targets=[0,1].map(()=>{let texture=graphics.counted(gl.createTexture());gl.bindTexture(
-gl.TEXTURE_2D,texture),gl.texStorage2D(gl.TEXTURE_2D,1,gl.R32F,wide,high),gl.texParameteri(gl.TEXTURE_2D,gl.TEXTURE_MIN_FILTER,
+gl.TEXTURE_2D,texture),gl.texStorage2D(gl.TEXTURE_2D,1,gl.R16F,wide,high),gl.texParameteri(gl.TEXTURE_2D,gl.TEXTURE_MIN_FILTER,
 gl.NEAREST),gl.texParameteri(gl.TEXTURE_2D,gl.TEXTURE_MAG_FILTER,gl.NEAREST);let frame=graphics.counted(gl.createFramebuffer());
 return gl.bindFramebuffer(gl.FRAMEBUFFER,frame),gl.framebufferTexture2D(gl.FRAMEBUFFER,gl.COLOR_ATTACHMENT0,gl.TEXTURE_2D,
 texture,0),{frame,texture}}),[this.columns,this.rows]=[wide,high]}};var MOST_SIDE_PX=3,PLACE3=5;function mostDoublings({shape:shape2,triangles},blocks,positions2,cells){let[rows,columns]=blocks.

@@ -443,7 +443,7 @@ u_source",n),s.bindFramebuffer(s.FRAMEBUFFER,e),s.viewport(0,0,t,r),s.drawArrays
 context;r.activeTexture(r.TEXTURE0+Q.indexOf(e)),r.bindTexture(r.TEXTURE_2D,t),r.activeTexture(r.TEXTURE0+Q.length)}fit(e,t){
 if(this.columns>=e&&this.rows>=t)return;let[r,n]=[Math.max(e,this.columns),Math.max(t,this.rows)];this.dispose();let{graphics:s}=this,
 o=s.context;this.targets=[0,1].map(()=>{let i=s.counted(o.createTexture());o.bindTexture(o.TEXTURE_2D,i),o.texStorage2D(
-o.TEXTURE_2D,1,o.R32F,r,n),o.texParameteri(o.TEXTURE_2D,o.TEXTURE_MIN_FILTER,o.NEAREST),o.texParameteri(o.TEXTURE_2D,o.TEXTURE_MAG_FILTER,
+o.TEXTURE_2D,1,o.R16F,r,n),o.texParameteri(o.TEXTURE_2D,o.TEXTURE_MIN_FILTER,o.NEAREST),o.texParameteri(o.TEXTURE_2D,o.TEXTURE_MAG_FILTER,
 o.NEAREST);let c=s.counted(o.createFramebuffer());return o.bindFramebuffer(o.FRAMEBUFFER,c),o.framebufferTexture2D(o.FRAMEBUFFER,
 o.COLOR_ATTACHMENT0,o.TEXTURE_2D,i,0),{frame:c,texture:i}}),[this.columns,this.rows]=[r,n]}};var bi=3,Ts=5;function As({shape:a,triangles:e},t,r,n){let[s,o]=t.shape,i=new Int8Array(s*o).fill(e?0:Math.log2(n));for(let c=0;c<
 r.length;c+=3){if(Number.isFinite(r[c]))continue;let[l,h]=[Math.floor(c/3/a[1]),c/3%a[1]];for(let u of[Math.floor((l-1)/
