@@ -11,8 +11,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pytest
+from drawn_views import drawn_by_webgl
 from flows import gyre, lines, swinging, torus, uncertain
-from matrix import ROOT, SHARE, SIZE, difference, straight
+from matrix import ROOT, SHARE, SIZE, View, difference, straight
 from pages import COMPLETE, opened_page
 from webgl_page import ClientPage, packed, state
 
@@ -303,6 +304,17 @@ def test_with_targets_of_half_precision_slices_are_the_same(
     other = texels(browser, tmp_path / "page.html", HIDDEN)
     # Graphics cards round to half precision by their own rules.
     np.testing.assert_allclose(other, found, rtol=2e-3, atol=2e-6)
+
+
+def test_a_picture_in_half_precision_is_the_same(browser: Browser, client: ClientPage) -> None:
+    view = View()
+    shown = view.made()
+    found = drawn_by_webgl(client, view, shown).astype(float)
+    with opened_page(browser, 901, 700) as opened:
+        opened.evaluate(f"() => {{ {HIDDEN} }}")
+        other = drawn_by_webgl(ClientPage(opened), view, shown)
+    assert found.std() > 10
+    assert np.abs(other - found).max() <= 2
 
 
 def test_what_a_client_cannot_trace_comes_as_slices() -> None:
