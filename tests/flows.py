@@ -8,6 +8,8 @@ import numpy as np
 from triangle_meshes import cube, polygon, random_plane, soup, sphere, tube
 
 from flowtex import FlowField
+from flowtex._util.array_types import Floats
+from flowtex.field.earth import Projection
 from flowtex.field.uncertainty import with_uncertainty
 
 
@@ -191,3 +193,15 @@ def ring() -> FlowField:
     points = np.stack([radius * np.cos(turn), radius * np.sin(turn), height], axis=-1)
     around = np.stack([-np.sin(turn), np.cos(turn), 0.3 * np.sin(5 * turn)], axis=-1)
     return FlowField.from_arrays(points, around)
+
+
+def half_known(name: str, lon: Floats, lat: Floats, known_from: float) -> FlowField:
+    """Return an eastward flow on a map, without data to the west of a longitude."""
+    projection = Projection(name)
+    lon, lat = np.meshgrid(lon, lat)
+    east = np.where(lon < known_from, np.nan, 1.0)
+    return FlowField.from_arrays(
+        projection.positions(lon, lat),
+        projection.vectors(lon, lat, east, 0 * lon),
+        projection=projection,
+    )

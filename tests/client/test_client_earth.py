@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from flows import half_known
 from numpy.typing import NDArray
 from scipy import ndimage
 from webgl_page import ClientPage, packed, state
@@ -126,14 +127,7 @@ def test_the_far_side_of_a_globe_is_hidden(client: ClientPage) -> None:
 
 @pytest.mark.parametrize("width", [300, 700])
 def test_the_legend_names_places_without_data(client: ClientPage, width: int) -> None:
-    projection = Projection("globe")
-    lon, lat = np.meshgrid(np.linspace(-40, -30, 11), np.linspace(20, 30, 11))
-    east = np.where(lon < -35, np.nan, 1.0)
-    field = FlowField.from_arrays(
-        projection.positions(lon, lat),
-        projection.vectors(lon, lat, east, 0 * lon),
-        projection=projection,
-    )
+    field = half_known("globe", np.linspace(-40, -30, 11), np.linspace(20, 30, 11), -35)
     made = scene(field, camera_of(field, 1), color="red", land="blue")
     number = client.mount(made, (width, 300), smooth=True)
     client.sharp(number)

@@ -200,7 +200,7 @@ def projections(rng: np.random.Generator) -> Any:
     return made[int(rng.integers(len(made)))]
 
 
-def on_edge(name: str | None) -> float:
+def on_edge(name: str | None, usual: float = 5e-3) -> float:
     """Return the share of the size of vectors by which those beside the edge of a map are off.
 
     Nodes of the data that are nearly on the edge are moved there. The edge of an azimuthal map is
@@ -208,7 +208,7 @@ def on_edge(name: str | None) -> float:
     """
     if name is not None and "laea" in name:
         return 0.02
-    return 5e-3
+    return usual
 
 
 @property_test(16, fuzz=100)
@@ -465,6 +465,6 @@ def test_stores_have_the_numbers_of_their_data(
         wanted, got = field.at(lon, lat, time=time), store.at(lon, lat, time=time)
         assert (wanted is None) == (got is None)
         if wanted is not None:
-            share = on_edge(name)
+            share = on_edge(name, usual=2e-3)
             assert numbers(got) == pytest.approx(numbers(wanted), rel=2e-3, abs=share * size)
     count_case(KIND)

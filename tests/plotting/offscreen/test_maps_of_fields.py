@@ -15,6 +15,7 @@ pytest.importorskip("cartopy")
 
 import cartopy.crs as ccrs
 from earth_data import components, winds
+from flows import half_known
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
@@ -237,14 +238,7 @@ def test_small_stores_are_drawn_on_every_map(stores: Path) -> None:
 
 @pytest.mark.parametrize("name", ["PlateCarree", "Robinson", "usual"])
 def test_a_legend_names_places_without_data(name: str) -> None:
-    projection = Projection("platecarree")
-    lon, lat = np.meshgrid(np.linspace(-40, -20, 11), np.linspace(20, 40, 11))
-    east = np.where(lon < -32, np.nan, 1.0)
-    field = FlowField.from_arrays(
-        projection.positions(lon, lat),
-        projection.vectors(lon, lat, east, 0 * lon),
-        projection=projection,
-    )
+    field = half_known("platecarree", np.linspace(-40, -20, 11), np.linspace(20, 40, 11), -32)
     figure = Figure()
     ax = figure.add_subplot(projection=AXES.get(name), facecolor="black")
     flowtex.axes(ax, field, samples=3)
