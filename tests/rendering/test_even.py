@@ -37,7 +37,7 @@ def ball() -> Any:
 def grey_of(flow: Any, **options: Any) -> Floats:
     """Draw a flow in one colour and without lights."""
     drawn = flowtex.render(flow, scalars=False, lighting=False, **options)
-    return np.asarray(drawn, float)[..., :3].mean(axis=-1)
+    return np.asarray(drawn[..., :3].mean(axis=-1))
 
 
 def cloud(grey: Floats, seen: Bools) -> float:

@@ -361,8 +361,10 @@ class Viewport:
             scale = width / across
             corner = (left * scale, (high - top - down) * scale)
             passes.part = PicturePart(*(round(n) for n in (*corner, wide * scale, high * scale)))
-        window.Render()
-        passes.part = None
+        try:
+            window.Render()
+        finally:
+            passes.part = None
         camera.SetWindowCenter(0, 0)
         apply_camera(self.camera, camera)
         values = vtkUnsignedCharArray()

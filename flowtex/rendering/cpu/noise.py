@@ -55,9 +55,9 @@ def noise_lattice(position: Floats, octave: Ints, values: Values) -> NoiseLattic
     inverse = shrink / values["u_noiseFinest"] * np.where(odd, const.SQRT_HALF, 1.0)
     cells = np.where(odd, values["u_noiseOriginOdd"], values["u_noiseOriginEven"])
     finest = np.asarray(cells, dtype=np.int64)
-    origin = finest >> doublings
-    rest = (finest - (origin << doublings) + np.where(odd, values["u_noiseRestOdd"], 0.0)) * shrink
-    origin = origin.astype(np.uint32)
+    shifted = finest >> doublings
+    rest = (finest - (shifted << doublings) + np.where(odd, values["u_noiseRestOdd"], 0.0)) * shrink
+    origin = shifted.astype(np.uint32)
     key = origin * const.AXIS_PRIMES
     seed = np.array([values["u_seed"]], np.uint32) * const.SEED_PRIME
     salt = octave.astype(np.uint32) * const.OCTAVE_PRIME + seed
