@@ -460,10 +460,15 @@ def _point(values: ArrayLike) -> Point:
 
 def read_camera(vtk_camera: Any) -> Camera:
     """Return the camera of a VTK camera, such as ``plotter.camera``, that sees something."""
+    up = np.array(vtk_camera.GetViewUp())
+    matrix = vtk_camera.GetModelViewTransformMatrix()
+    upwards = [matrix.GetElement(1, column) for column in range(3)]
+    if np.dot(up, upwards) < 0:  # turned over a pole, which VTK's own attribute does not say
+        up = -up
     return Camera(
         position=vtk_camera.GetPosition(),
         focal_point=vtk_camera.GetFocalPoint(),
-        up=vtk_camera.GetViewUp(),
+        up=tuple(up.tolist()),
         parallel=bool(vtk_camera.GetParallelProjection()),
         parallel_scale=vtk_camera.GetParallelScale(),
         view_angle=vtk_camera.GetViewAngle(),

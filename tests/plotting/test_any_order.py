@@ -91,10 +91,8 @@ def shot(plotter: Any) -> Any:
 
 
 def copy_camera(plotter: Any, to: Any) -> None:
-    camera, other = plotter.camera, to.camera
-    for name in ("position", "focal_point", "up", "view_angle", "parallel_scale"):
-        setattr(other, name, getattr(camera, name))
-    other.parallel_projection = camera.parallel_projection
+    # VTK's camera keeps more than its attributes say: it may have been turned over a pole.
+    to.camera.DeepCopy(plotter.camera)
 
 
 def refusal(make: Callable[[], Any]) -> type[Exception] | None:

@@ -59,6 +59,24 @@ def test_vtk_takes_and_gives_it_back(camera: Camera) -> None:
     assert read_camera(vtk_camera(camera)) == camera
 
 
+def test_a_camera_turned_over_a_pole_is_read_as_it_looks() -> None:
+    from vtkmodules.vtkRenderingCore import vtkCamera
+
+    from flowtex.rendering.camera import apply_camera, read_camera
+
+    turned, again = vtkCamera(), vtkCamera()
+    turned.SetPosition(0, 0, 3)
+    for _ in range(5):
+        turned.Elevation(20)
+    apply_camera(read_camera(turned), again)
+    seen = [
+        [camera.GetModelViewTransformMatrix().GetElement(row, column) for column in range(4)]
+        for camera in (turned, again)
+        for row in range(3)
+    ]
+    assert np.array(seen[:3]) == pytest.approx(np.array(seen[3:]))
+
+
 @pytest.mark.parametrize("camera", [ASIDE, STRAIGHT])
 @pytest.mark.parametrize(("dx", "dy"), [(0.3, 0.0), (0.0, -0.4), (-0.7, 0.2)])
 def test_a_turn_is_that_of_vtk(camera: Camera, dx: float, dy: float) -> None:
