@@ -211,6 +211,18 @@ def on_edge(name: str | None, usual: float = 5e-3) -> float:
     return usual
 
 
+def is_torn(name: str | None, lon: float, lat: float) -> bool:
+    """Return whether a place is within two cells of the edge of an azimuthal map.
+
+    The antipode of its centre tears the cells around it, and nodes of the data move to the tear.
+    """
+    if name is None or "laea" not in name:
+        return False
+    a, b, middle = np.radians([lat, -30.0, lon - 120.0])
+    cosine = np.sin(a) * np.sin(b) + np.cos(a) * np.cos(b) * np.cos(middle)
+    return bool(cosine > np.cos(np.radians(40.0)))
+
+
 @property_test(16, fuzz=100)
 @given(seed=st.integers(0, 2**32 - 1))
 @example(seed=104916)  # a map on which a pole is one point
@@ -234,10 +246,13 @@ def test_datasets_fields_and_maps_have_one_number(seed: int) -> None:
             # Taken from or to such a map it is a curvilinear grid, whose cells of up to 18 degrees
             # have straight sides on the other map.
             shares[2] = 0.08
-        for share, field in zip(shares, fields, strict=True):
+        torn = [is_torn(name, lon, lat) for name in (one, other, third)]
+        # Rows of a curvilinear grid beside a pole are no circles on the other map.
+        torn[2] |= torn[0] or (on_edge(one) > on_edge(None) and abs(lat) > 75)
+        for share, is_beside, field in zip(shares, torn, fields, strict=True):
             got = field.at(lon, lat, time=time)
-            if got is None:
-                continue  # beyond the edge of the map
+            if got is None or is_beside:
+                continue  # beyond the edge of the map, or beside it
             assert numbers(got) == pytest.approx(wanted, rel=2e-3, abs=share * size)
     got = fields[0].at(lon, lat, time=time)
     if got is not None:
