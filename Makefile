@@ -61,7 +61,7 @@ format: $(VENV)/.ready-test ## format the code
 client: $(VENV)/.ready-test ## build the browser client into the package
 	sh tools/client.sh $(BIN) build
 
-docs: $(VENV)/.ready-test ## write the table of settings into the guide
+docs: $(VENV)/.ready-test ## write the tables of settings and of supported data into the docs
 	FLOWTEX_WRITE_DOCS=1 $(BIN)/python -m pytest -q tests/test_docs.py -k table
 
 site: $(VENV)/.ready-site ## build the site into out/site, and check its links, spelling and accessibility

@@ -307,14 +307,33 @@ def row(setting: Setting) -> str:
     return f"| `{setting.name}` | `{default}` | {setting.expected} | {setting.text} |"
 
 
-def test_the_table_of_settings_is_that_of_the_code() -> None:
-    page = ROOT / "docs" / "guide.md"
+def check_table(page: Path, begin: str, end: str, table: str) -> None:
+    """Compare a table between two marks of a page with the one that is made, or write it anew."""
     text = page.read_text()
+    start = text.index("\n", text.index(begin)) + 1
+    written = text[start : text.index(end)]
+    if os.environ.get("FLOWTEX_WRITE_DOCS"):
+        page.write_text(f"{text[:start]}{table}\n{text[text.index(end) :]}")
+        return
+    assert written.strip() == table.strip(), "run make docs, which writes the table anew"
+
+
+def test_the_table_of_settings_is_that_of_the_code() -> None:
     head = "| name | default | values | what it does |\n| --- | --- | --- | --- |"
     table = "\n".join([head, *map(row, TABLE.values())])
-    start = text.index("\n", text.index(BEGIN)) + 1
-    written = text[start : text.index(END)]
-    if os.environ.get("FLOWTEX_WRITE_DOCS"):
-        page.write_text(text[:start] + table + "\n" + text[text.index(END) :])
-        return
-    assert written.strip() == table, "run make docs, which writes the table anew"
+    check_table(ROOT / "docs" / "guide.md", BEGIN, END, table)
+
+
+def test_the_table_of_supported_data_is_that_of_the_tests() -> None:
+    supported = import_module("test_supported")
+    lines = []
+    for kind in dict.fromkeys(row.kind for row in supported.ROWS):
+        lines += [f"## {kind}", "", "| data | line of code | how flowtex reads it |"]
+        lines.append("| --- | --- | --- |")
+        for form in supported.ROWS:
+            if form.kind == kind:
+                needs = f"; needs `{form.needs}`" if form.needs else ""
+                lines.append(f"| {form.form} | `{form.code}` | {form.reads}{needs} |")
+        lines.append("")
+    begin, end = "<!-- forms: made from", "<!-- end of forms -->"
+    check_table(ROOT / "docs" / "supported.md", begin, end, "\n".join(lines))

@@ -107,7 +107,7 @@ class _CGNSReader:
 _KNOWN_FORMATS = (
     "a mesh that PyVista reads (.vts, .vtr, .vti, .vtk, .vtu, .vtp, .vtm, .pvd, .cgns, .case, "
     ".foam and more), PLOT3D (.xyz with .q beside it), or a dataset or table (.nc, .zarr, "
-    ".grib, .json, .geojson, .csv, .vec)"
+    ".grib, .json, .geojson, .csv, .txt, .vec)"
 )
 #: A URL of which ``pathlib`` has made a path; one letter is a drive.
 _ADDRESS = re.compile(r"[A-Za-z][A-Za-z0-9+.-]+:[/\\]")

@@ -30,8 +30,8 @@ from flowtex.scene.fields import read_field
 from flowtex.sources.datasets import is_dataset
 from flowtex.sources.meshes.plot3d import SURFACE_SUFFIXES as WITHOUT_VECTORS
 from flowtex.sources.open_source import DatasetSource, FlowSource, MeshSource
+from flowtex.sources.opening.dataset_files import COMMON, common_name, is_dataset_file
 from flowtex.sources.opening.dataset_files import SUFFIXES as EARTH_SUFFIXES
-from flowtex.sources.opening.dataset_files import common_name, is_dataset_file
 from flowtex.sources.read_files import Identity, file_identity, members_of
 from flowtex.sources.remote import open_remote, prepare_readers
 
@@ -43,7 +43,7 @@ SUFFIXES = frozenset(
         *(".e", ".ex2", ".exii", ".exo", ".stl", ".ply", ".obj"),
         *EARTH_SUFFIXES,
     ]
-)
+).difference(COMMON)
 #: Depth to which a folder is searched.
 FOLDER_DEPTH = 4
 #: Most files of a folder that are listed.

@@ -22,7 +22,7 @@ from flowtex.sources.datasets.select import find_pairs
 from flowtex.sources.inspection.inspect_file import NETCDF, inspect_file
 from flowtex.sources.models.conventions import with_mesh_axes
 from flowtex.sources.notices import Record
-from flowtex.sources.opening import tables
+from flowtex.sources.opening import flow_text, tables
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -34,7 +34,13 @@ DAYS_AS_NUMBERS = "%Y%m%d"
 GRIB = (".grib", ".grb", ".grib2", ".grb2")
 ZARR = (".zarr",)
 JSON = (".json", ".geojson")
-TABLES = {".csv": tables.read_csv, ".vec": tables.read_vec}
+TABLES = {
+    ".csv": flow_text.read_columns,
+    ".txt": flow_text.read_text,
+    ".vec": tables.read_vec,
+}
+#: Suffixes that files of other content have as well; folders are not searched for them.
+COMMON = (".txt",)
 #: Suffixes of files that are opened by xarray.
 SUFFIXES = (*NETCDF, *GRIB, *ZARR, *JSON, *TABLES)
 
@@ -65,6 +71,9 @@ def as_datasets(data: Any, record: Record | None = None) -> Datasets:
     result = []
     for ds in data if isinstance(data, (list, tuple)) else [data]:
         several = isinstance(data, (list, tuple)) and len(data) > 1
+        note = getattr(ds, "encoding", {}).get(flow_text.NOTE)
+        if note is not None:
+            record("select", note, notable=True)
         part = (
             of_tree(ds)
             if isinstance(ds, xarray.DataTree)

@@ -25,17 +25,16 @@ from flowtex._util.array_types import AnyArray
 from flowtex.errors import FieldError, import_extra
 from flowtex.sources.datasets import is_dataset
 from flowtex.sources.datasets.coordinates import LATITUDE, LONGITUDE
+from flowtex.sources.opening.column_names import component_names, split_unit
 from flowtex.sources.reader_errors import check_count, check_memory
 
 if TYPE_CHECKING:
     import xarray as xr
 
-ACROSS = re.compile(r"^(x|x_?coord\w*|x_?pos\w*|easting)$", re.I)
-UPWARD = re.compile(r"^(y|y_?coord\w*|y_?pos\w*|northing)$", re.I)
+ACROSS = re.compile(r"^(x|x[-_ ]?coord\w*|x[-_ ]?pos\w*|easting)$", re.I)
+UPWARD = re.compile(r"^(y|y[-_ ]?coord\w*|y[-_ ]?pos\w*|northing)$", re.I)
 LEVELS = re.compile(r"^(z|lev\w*|depth|height|altitude|plev|pressure)$", re.I)
 TIMES = re.compile(r"^(t|(valid_?)?(date_?)?time\w*|date)$", re.I)
-#: A column with its unit, as ``"u [m/s]"``.
-WITH_UNIT = re.compile(r"^(.*?)\s*[\[(](.*)[\])]$")
 #: Names and units of columns in the header of a .vec file.
 VEC_COLUMN = re.compile(r'"(\S+)\s*([^",]*)"')
 #: The column of flags of a .vec file.
@@ -130,13 +129,15 @@ def _plain(table: Any) -> tuple[Any, dict[str, dict[str, str]]]:
         frame = frame.assign(**{names[0]: at.x, names[1]: at.y})
     levels = [name for name in frame.index.names if name is not None]
     frame = frame.reset_index(levels) if levels else frame
-    named, attributes = {}, {}
-    for column in frame.columns:
-        match = WITH_UNIT.match(str(column))
-        named[column] = match[1] if match else str(column).strip()
-        if match:
-            attributes[match[1]] = {"units": match[2]}
-    return frame.rename(columns=named), attributes
+    named = {column: split_unit(str(column)) for column in frame.columns}
+    changes = component_names(name for name, _ in named.values())
+    columns = {}
+    attributes = {}
+    for column, (name, unit) in named.items():
+        columns[column] = changes.get(name, name)
+        if unit:
+            attributes[columns[column]] = {"units": unit}
+    return frame.rename(columns=columns), attributes
 
 
 def _pair(
@@ -249,14 +250,15 @@ def _check_rows(path: Path, separator: str | None, *, header: int = 0) -> None:
             for number, row in _rows(file, separator):
                 count = count or _names(row)
                 if len(row) < count:
-                    raise _cut_row(number + bool(header), row, f"{len(row)} of {count} values")
+                    raise cut_row(number + bool(header), row, f"{len(row)} of {count} values")
     except csv.Error as error:
         raise FieldError(f"its rows cannot be read ({error}); write or copy it again") from error
     if row and not row[-1].strip() and not _ends_with_line(path):
-        raise _cut_row(number + bool(header), row, "no end and no last value")
+        raise cut_row(number + bool(header), row, "no end and no last value")
 
 
-def _cut_row(number: int, row: list[str], fault: str) -> FieldError:
+def cut_row(number: int, row: list[str], fault: str) -> FieldError:
+    """Return the error for a row of a text that ends too early."""
     text = ", ".join(row)
     if len(text) > MOST_SHOWN:
         text = text[:MOST_SHOWN] + "…"

@@ -1,0 +1,24 @@
+"""Each line of the page "Supported data" draws the flow of its files."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+import text_forms
+from known_flow import check
+from supported import ROWS, Supported, drawn
+
+pytest.importorskip("pyproj")
+MODULES = (text_forms,)
+
+
+@pytest.mark.parametrize("row", ROWS, ids=lambda row: row.make.__name__)
+def test_line_of_supported_data_draws_the_flow(
+    row: Supported, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    if row.needs:
+        pytest.importorskip(row.needs)
+    monkeypatch.chdir(tmp_path)
+    variables, truth = row.make(tmp_path)
+    check(drawn(row.code, variables), truth)
