@@ -38,7 +38,22 @@ test("keys change the page, unless somebody else wants them", () => {
     ["toggle", "close"],
     ["toggle", "close"],
   ]);
+});
+
+test("a link is taken at first and later, and leaves the address", () => {
+  page.location.hash = "#first";
+  asked.length = 0;
+  const { told, leave } = shown(keys, null);
+  assert.deepEqual([page.location.hash, asked], ["", [["address", "/page/?a=b"]]]);
+  page.dispatchEvent(eventOf("hashchange"));
+  page.location.hash = "#later";
+  page.dispatchEvent(eventOf("hashchange"));
+  assert.equal(page.location.hash, "");
+  leave();
+  page.location.hash = "#too late";
+  page.dispatchEvent(eventOf("hashchange"));
   page.location.hash = "";
+  assert.deepEqual(told, [["linked", "#first"], ["linked", "#later"]]);
   assert.deepEqual(shown(keys, null).told, []);
 });
 

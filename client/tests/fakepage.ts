@@ -92,7 +92,14 @@ export class FakeObserver {
 }
 
 export const page = Object.assign(new EventTarget(), {
-  location: { hash: "" },
+  location: { hash: "", pathname: "/page/", search: "?a=b" },
+  history: {
+    state: null,
+    replaceState: (_state: unknown, _title: string, address: string) => {
+      page.location.hash = new URL(address, "http://host").hash;
+      asked.push(["address", address]);
+    },
+  },
   setTimeout: (call: () => void, wait: number) => setTimeout(call, wait),
   Vue: {
     h: (kind: string, ...content: unknown[]) => ({ kind, content }),

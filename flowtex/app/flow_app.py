@@ -125,7 +125,9 @@ class FlowApp:
         self.beside = FileBeside(self.context, self.data)
         self.appearance = Appearance(self.context, self.beside)
         self.viewpoint = Viewpoint(self.context)
-        self.sharing = Sharing(self.context, self.data, self.beside, self.restore)
+        first = self.appearance.first
+        self.sharing = Sharing(self.context, self.data, self.beside, self.restore, first)
+        self._first = (name, choice)
         self.context.field_changed.connect(self._name_page)
         self._name_page()
         self.layout = build_page(self)
@@ -140,15 +142,17 @@ class FlowApp:
         self.context.show(field, **keep)
 
     def restore(self, state: State) -> None:
-        """Show the state of a link."""
-        choice = Choice(*(str(state.get(name, "")) for name in CHOICE_ARGUMENTS))
-        if "file" not in state and choice == Choice():
-            self._restore(state)
-        else:
-            name = str(state.get("file", self.data.name))
-            self.data.open(name, choice, lambda: self._restore(state))
+        """Show the state of a link, and what that omits as on a new page."""
+        first_name, first_choice = self._first
+        name = str(state.get("file", first_name))
+        choice = Choice(*(str(state.get(key, "")) for key in CHOICE_ARGUMENTS))
+        if name == first_name and choice == Choice():
+            choice = first_choice
+        self.data.open(name, choice, lambda: self._restore(state))
 
     def _restore(self, state: State) -> None:
+        if (self.data.name, self.data.choice) == self._first:
+            self.viewpoint.look_as_first()
         try:
             for controller in self.context.controllers:
                 controller.restore(state)
@@ -176,6 +180,7 @@ class Viewpoint(Controller):
 
     def __init__(self, context: Context) -> None:
         super().__init__(context)
+        self._first_look, self._first_camera = self.viewport.look, self.viewport.chosen_camera
         self.state.set(views=self.views)
         context.field_changed.connect(lambda: self.state.set(views=self.views))
 
@@ -191,17 +196,26 @@ class Viewpoint(Controller):
             self.viewport.home(toward=toward, up=up)
             self.area.changed()
 
+    def look_as_first(self) -> None:
+        """Look as the page does when it is new."""
+        self.viewport.home(**self._first_look)
+        if self._first_camera is not None:
+            self.viewport.camera = self._first_camera
+
     def describe(self) -> State:
         """Return the camera, and the time where it makes a difference."""
         time = {} if self.viewport.field.steady else {"time": self.area.player.time}
-        return {"camera": self.viewport.camera.to_dict(), **time}
+        return {"camera": self.viewport.camera.to_dict(), "clock": self.viewport.clock, **time}
 
     def restore(self, saved: State) -> None:
-        """Look from a saved camera, at a saved time."""
+        """Stop at a saved time, and look from a saved camera."""
+        field, player = self.viewport.field, self.area.player
+        player.playing = False
+        self.viewport.clock = float(saved.get("clock", 0.0))
+        if not field.steady:
+            player.go_to(float(saved.get("time", field.times[0])))
         if saved.get("camera"):
             self.area.look(saved["camera"])
-        if "time" in saved and not self.viewport.field.steady:
-            self.area.player.go_to(float(saved["time"]))
 
 
 def first_choice(library: Library, options: Mapping[str, Any]) -> tuple[str, Choice]:

@@ -207,6 +207,11 @@ class Scene:
         return self._limits(self.appearance)
 
     @property
+    def has_own_range(self) -> bool:
+        """Whether the automatic range of the colours is that of this flow, not of one before."""
+        return not any(name == self.scalar_name for name, _ in self._kept)
+
+    @property
     def colour_scale(self) -> ColourScale:
         """The colours of the scalars, by which all renderers draw."""
         return scale_of(self.appearance, self._limits(self.appearance))

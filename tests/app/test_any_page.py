@@ -55,6 +55,8 @@ class AnyPage(RuleBasedStateMachine):
         self.size = SIZES[0]
         self.clock = 0.0
         self.painter = painter
+        self.first_name = name
+        self.links: list[str] = []
         self.loop = asyncio.new_event_loop()
         self.app = self.page(name)
         if not waits:
@@ -146,6 +148,21 @@ class AnyPage(RuleBasedStateMachine):
             self.tell(lambda: state.set(axis=axis))
             self.tell(lambda: state.set(index=round(share * state.get("planes"))))
 
+    @rule()
+    def remember_link(self) -> None:
+        self.links.append(self.link())
+
+    @rule(data=st.data())
+    def take_link(self, data: Any) -> None:
+        if self.links:
+            link = data.draw(st.sampled_from(self.links))
+            self.tell(lambda: self.app.sharing.take_link(link))
+
+    def link(self) -> str:
+        """Return the page's link to what it shows."""
+        self.app.sharing.show_state()
+        return str(self.app.state.get("link"))
+
     @rule(theme=st.sampled_from(["dark", "light"]))
     def set_theme(self, theme: str) -> None:
         self.tell(lambda: self.app.state.set(theme=theme))
@@ -191,7 +208,20 @@ class AnyPage(RuleBasedStateMachine):
             self.complete(new)
             np.testing.assert_allclose(self.picture(app), self.picture(new), atol=ROUNDING)
             self.check_told(self.handed(new))
+            self.check_link()
         count_case("state machine")
+
+    def check_link(self) -> None:
+        """Compare the page with a new one that opens its link."""
+        link, app = self.link(), self.app
+        picture, told = self.picture(app), self.told
+        self.app = self.page(self.first_name)
+        with closing(self.app) as new:
+            self.told = self.handed(new)
+            new.server.js_call = self.take
+            self.tell(lambda: new.sharing.take_link(link))
+            np.testing.assert_allclose(picture, self.picture(new), atol=ROUNDING)
+        self.app, self.told = app, told
 
     def check_told(self, expected: dict[str, Any]) -> None:
         """Compare what the browser was told with what a new one is handed."""

@@ -69,6 +69,7 @@ async def test_use_leaves_no_object_behind() -> None:
     # A second move of the pointer soon after the first waits in the loop.
     async with playing(app):
         use()  # every variant has been shown once
+        use()  # and what the page shows is not what a new one does
         before = objects()
         use()
         assert objects() - before == Counter()

@@ -11,6 +11,7 @@ import sys
 from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
+from urllib.parse import urlsplit
 
 import numpy as np
 import pytest
@@ -410,6 +411,23 @@ def test_a_link_and_lines_of_python_tell_the_state(page: Page, folder: Path) -> 
     other.get_by_text("3 times").wait_for()
     settled(other, 0)
     WATCH.comes_to(other, seen)
+    # In the same tab, after another flow and another view, as typed and as a whole address.
+    hash_of = urlsplit(copied).fragment
+    for show in (
+        lambda: other.evaluate("(link) => { location.hash = link; }", hash_of),
+        lambda: other.goto(copied),
+    ):
+        open_file(other, "block.vts")
+        other.get_by_text("steady").wait_for()
+        before = count(other)
+        other.mouse.move(400, 200)
+        other.mouse.wheel(0, -300)
+        settled(other, before)
+        assert difference(WATCH.shot(other), seen) > 8
+        show()
+        other.get_by_text("3 times").wait_for()
+        WATCH.comes_to(other, seen)
+        assert "#" not in other.url
     other.close()
 
 

@@ -20,6 +20,17 @@ function press(event: KeyboardEvent, emit: Emit): void {
   if (!isClose) event.preventDefault();
 }
 
+/**
+ * Emit the state of a link, which follows the # as browsers do not send that to servers. It leaves the address,
+ * so that the page keeps its later state when it is loaded again, and takes the same link again.
+ */
+function takeLink(emit: Emit): void {
+  const { hash, pathname, search } = window.location;
+  if (hash.length <= 1) return;
+  window.history.replaceState(window.history.state, "", pathname + search);
+  emit("linked", hash);
+}
+
 export const keys = {
   name: "flowtex-keys",
   emits: ["toggle", "linked"],
@@ -33,8 +44,8 @@ export const keys = {
       const focus = new Focus(document, lifetime, () => document.querySelector<HTMLElement>(".flowtex"));
       const keep = () => requestAnimationFrame(() => focus.keep());
       for (const kind of ["keydown", "click"]) lifetime.listen(window, kind, keep, capture);
-      // A link to a state contains it after the #, which browsers do not send to servers.
-      if (window.location.hash.length > 1) emit("linked", window.location.hash);
+      lifetime.listen(window, "hashchange", () => takeLink(emit));
+      takeLink(emit);
     });
     vue().onBeforeUnmount(() => lifetime.end());
     return () => null;

@@ -13,7 +13,7 @@ from flowtex.app.server.page import name_among
 from flowtex.app.streaming.element import PAINTERS
 from flowtex.app.streaming.viewport import BACKGROUNDS as THEMES
 from flowtex.errors import FieldError
-from flowtex.scene.options import EARTH_LINES
+from flowtex.scene.options import EARTH_LINES, SPEED
 from flowtex.scene.options import Appearance as Look
 from flowtex.settings import named_values
 
@@ -89,6 +89,8 @@ class Appearance(Controller):
         context.field_changed.connect(self.show_field)
         self.area.painter_changed.connect(lambda: self.state.set(painter=self.area.painter))
         self.take_background()
+        self.first = self.describe()  #: What a new page shows.
+        self._first_look = self.area.scene.appearance
 
     def show_field(self) -> None:
         """Show the possible comparisons with the flow on the page."""
@@ -134,33 +136,45 @@ class Appearance(Controller):
 
     def describe(self) -> State:
         """Return settings, colours, background and comparison."""
+        scene = self.area.scene
+        is_automatic = self.area.clim is None and scene.has_own_range
         return {
             "settings": dict(self.settings),
             "colour": self.area.scalars or PLAIN,
-            **look_shown(self.area.scene.appearance),
-            "clim": None if self.area.clim is None else self.area.scene.scalar_limits,
+            **look_shown(scene.appearance),
+            "clim": None if is_automatic else scene.scalar_limits,
             "theme": self.theme,
             "background": self.background,
             "split": self.compared,
         }
 
     def restore(self, saved: State) -> None:
-        """Restore saved settings, colours, background and comparison."""
-        settings = {k: v for k, v in saved.get("settings", {}).items() if v != "image"}
-        self.settings.update(**settings)
-        names = {"split": "compare", "theme": "theme", "background": "background"}
-        self.state.set(**{names[name]: saved[name] for name in names if name in saved})
-        look = {name: saved[name] for name in LOOK if name in saved}
-        if not name_among(look.get("cmap"), CMAPS):
-            look.pop("cmap", None)
-        if name_among(name := saved.get("colour"), (PLAIN, *self.area.scene.scalar_names)):
-            look = {"clim": None, **look, "scalars": False if name == PLAIN else name}
+        """Restore saved settings, colours, background and comparison; the others are the first."""
+        present = self.describe()["settings"]
+        settings = {**self.first["settings"], **saved.get("settings", {})}
+        changed = {k: v for k, v in settings.items() if v not in ("image", present[k])}
+        self.settings.update(**changed)
+        whole = {**self.first, **saved}
+        self.state.set(compare=whole["split"], theme=whole["theme"], background=whole["background"])
         try:
-            self.area.scene.appearance = self.area.scene.appearance.changed(**look)
+            self.area.scene.appearance = self._look_of(saved)
         except FieldError as error:
             self.context.complain(error)
         self.take_background()
         self.take_comparison()
+
+    def _look_of(self, saved: State) -> Look:
+        """Return a saved appearance, completed by the first one as far as it fits the flow."""
+        look = {name: saved[name] for name in LOOK if name in saved}
+        if not name_among(look.get("cmap"), CMAPS):
+            look.pop("cmap", None)
+        first_name, names = self.first["colour"], (PLAIN, *self.area.scene.scalar_names)
+        name = saved.get("colour", first_name)
+        if not name_among(name, names):
+            name = first_name if first_name in names else SPEED
+        if name != first_name:
+            look = {"clim": None, **look, "scalars": False if name == PLAIN else name}
+        return self._first_look.changed(**look)
 
     def _comparisons(self) -> list[str]:
         times = self.viewport.field.times

@@ -88,6 +88,11 @@ class LoadRequest:
     then: Callable[[], None] | None = None
     cancelled: bool = False  #: Whether its result is not to be shown.
 
+    @property
+    def is_link(self) -> bool:
+        """Whether it is followed by the rest of a link's state."""
+        return self.then is not None
+
 
 @dataclass(frozen=True, eq=False)
 class LoadedFlow:

@@ -119,8 +119,8 @@ class Data(FlowOpener):
 
     async def _open(self, request: LoadRequest) -> None:
         def time(field: FlowField) -> float:
-            keep = self._has_same_velocity(request.name, request.choice, field)
-            return first_time(self.area.scene, field, keep=keep)
+            same = self._has_same_velocity(request.name, request.choice, field)
+            return first_time(self.area.scene, field, keep=same and not request.is_link)
 
         flow = await self._read(request, time)
         self._show(flow, request)
@@ -146,7 +146,8 @@ class Data(FlowOpener):
         """Replace the flow by another one; if that fails, it stays."""
         before = self._current, self._goal
         new, old = flow.choice, self.choice
-        same = self._has_same_velocity(flow.name, new, flow.field)
+        # A link shows the same whatever was shown before.
+        same = not request.is_link and self._has_same_velocity(flow.name, new, flow.field)
         keep = same and (new.block, _axis(new.plane)) == (old.block, _axis(old.plane))
         # A file that has changed has other values.
         same_values = same and flow.source.identity == self._current.source.identity

@@ -32,11 +32,12 @@ from flowtex.errors import FieldError
 from flowtex.rendering.camera import Camera
 from flowtex.scene.forms import FORMS
 from flowtex.scene.options import Appearance as Look
+from flowtex.scene.options import default_cmap
 from flowtex.settings import TABLE, SettingsError
 from flowtex.sources.open_source import OUTER
 from flowtex.sources.opening.dataset_files import is_dataset_file
 
-#: Values that a link leaves out.
+#: Values that a link leaves out, with the default colour map of the scalar.
 DEFAULTS: dict[str, Any] = {
     "clock": 0.0,
     "colour": "speed",
@@ -64,12 +65,24 @@ PLANE = re.compile(r"[A-Za-z]\w{0,59}=\d{1,9}|[xyz]=-?[\d.]{1,16}(e[-+]?\d{1,3})
 CMAP = re.compile(r"[A-Za-z]\w{0,59}", re.ASCII)
 
 
-def to_link(state: State) -> str:
-    """Return a state as the query of a link, such as ``plane=k=20&lod=off``, without defaults."""
+def _defaults_of(state: State) -> dict[str, Any]:
+    """Return the values that a link of a state leaves out."""
+    colour = state.get("colour", DEFAULTS["colour"])
+    return {**DEFAULTS, "cmap": default_cmap(colour)}
+
+
+def to_link(state: State, first: State | None = None) -> str:
+    """Return a state as the query of a link, such as ``plane=k=20&lod=off``.
+
+    It leaves out defaults, unless a new page shows another value ``first``.
+    """
+    first, defaults = first or {}, _defaults_of(state)
+    first_settings = first.get("settings") or {}
     pairs = [
         (name, form.write(state[name]))
         for name, form in _FORMS.items()
-        if state.get(name) is not None and state[name] != DEFAULTS.get(name)
+        if state.get(name) is not None
+        and (state[name] != defaults.get(name) or state[name] != first.get(name, state[name]))
     ]
     for name, value in (state.get("settings") or {}).items():
         if name not in TABLE:
@@ -77,8 +90,9 @@ def to_link(state: State) -> str:
                 f"the setting {name!r} of a link does not exist; expected one of: "
                 f"{', '.join(TABLE)}"
             )
+        is_default = value == TABLE[name].default == first_settings.get(name, value)
         # An image is a person's own; a link has no room for it.
-        if value not in (TABLE[name].default, "image"):
+        if not is_default and value != "image":
             pairs.append((name, TABLE[name].format(value)))
     return urlencode(pairs, safe=",:/=", quote_via=quote)
 
@@ -198,8 +212,9 @@ def _render(state: State, source: str | None, size: tuple[int, int]) -> str:
             raise FieldError("the state has no file; pass the expression that makes its field")
         source, values = _literal(state["file"]), _part(state)
     state = {**DEFAULTS, **{name: value for name, value in state.items() if value is not None}}
+    defaults = _defaults_of(state)
     values |= {"size": size, "scalars": state["colour"] != PLAIN and state["colour"]}
-    values |= {n: state[n] for n in (*LOOK, "time", "clock") if state.get(n) != DEFAULTS.get(n)}
+    values |= {n: state[n] for n in (*LOOK, "time", "clock") if state.get(n) != defaults.get(n)}
     has_theme = state["background"] == DEFAULTS["background"]
     values["background"] = THEMES[state["theme"]] if has_theme else state["background"]
     values |= {"camera": state["camera"]} if "camera" in state else {}

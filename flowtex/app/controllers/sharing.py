@@ -62,7 +62,10 @@ _log = logging.getLogger(__name__)
 
 
 class Sharing(Controller):
-    """Exports of a page; ``restore_state`` is called with the state of a link."""
+    """Exports of a page, which shows ``first`` when it is new.
+
+    ``restore_state`` is called with the state of a link.
+    """
 
     def __init__(
         self,
@@ -70,10 +73,12 @@ class Sharing(Controller):
         data: Data,
         beside: FileBeside,
         restore_state: Callable[[State], None],
+        first: State,
     ) -> None:
         super().__init__(context)
         self.downloads = Downloads(context.routes)
         self._data, self._beside, self._restore_state = data, beside, restore_state
+        self._first = first
         self._task: asyncio.Task[None] | None = None
         self.state.set(
             out_format=FORMATS[0],
@@ -172,7 +177,7 @@ class Sharing(Controller):
         state, beside = self.present_state(), self._beside.name
         is_file = self.context.library.is_file
         self.state.set(
-            link="#" + to_link(state),
+            link="#" + to_link(state, self._first),
             python=to_python(
                 state,
                 source=None if is_file(self._data.name) else "field",

@@ -289,25 +289,30 @@ class Viewport:
 
     def resize(self, width: int, height: int, *, fits: bool = True) -> None:
         """Change the size of the whole view; the camera of :meth:`home` may fit it again."""
-        at_home, self.size = self.camera == self._home, (width, height)
+        at_home, self.size = self.chosen_camera is None, (width, height)
         self._set_picture(*self.pane_size)
         if fits and at_home:
-            self.home(**self._look)
+            self.home(**self.look)
 
     def _set_picture(self, *size: int) -> None:
         self._picture = size
         self.plotter.window_size = [min(side, self.longest_side) for side in size]
 
     def home(self, **look: Any) -> None:
-        """Look at the whole surface; ``look`` are arguments of :meth:`Camera.fit`."""
-        self._look = look
+        """Look at the whole surface; ``look`` are arguments of :meth:`Camera.fit`, kept as that."""
+        self.look = look
         self.camera = self._home = Camera.fit(self.scene.whole.surface, self.aspect, **look)
+
+    @property
+    def chosen_camera(self) -> Camera | None:
+        """The camera; ``None`` if it is that of :meth:`home`."""
+        return None if self.camera == self._home else self.camera
 
     @property
     def sees_all(self) -> bool:
         """Whether the camera shows the whole surface from the default direction."""
-        is_near = self._look.get("focus") or self._look.get("zoom", 1.0) != 1.0
-        return self.camera == self._home and not (is_near or self._look.get("toward"))
+        is_near = self.look.get("focus") or self.look.get("zoom", 1.0) != 1.0
+        return self.camera == self._home and not (is_near or self.look.get("toward"))
 
     def surface_point(self, x: float, y: float, pane: int = 0) -> Floats | None:
         """Return the point of a pane's surface at (x, y) from -1 to 1; ``None`` beside it.

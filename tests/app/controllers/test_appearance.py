@@ -58,5 +58,6 @@ def test_a_saved_look_comes_back_as_a_whole(flat: FlowApp) -> None:
     saved = appearance.describe()
     assert saved["log_scale"] is True and saved["opacity"] == 0.25 and saved["clim"] == (0.5, 2.0)
     appearance.restore({"colour": "no such", "cmap": "os_system", "opacity": 1.0})
-    assert (area.scalars, area.cmap, area.opacity) == ("height", "magma", 1.0)
+    assert (area.scalars, area.cmap, area.opacity) == ("speed", "viridis", 1.0)
+    assert area.clim is None and not area.log_scale
     area.scene.appearance = before

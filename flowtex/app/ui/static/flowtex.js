@@ -87,11 +87,13 @@ element&&each.isConnected),this.had.push(element),this.current=element}),lifetim
 lost))return;let shown=this.had.filter(isShown);(shown.length?shown[shown.length-1]:this.fallback(lost))?.focus({preventScroll:!0})}};var TOGGLES={[CLOSE_KEY]:"close",t:"theme",[HELP_KEY]:"help"},OWNERS="input, textarea, select, [contenteditable], [role=\
 slider], .v-overlay--active";function press(event,emit){let[target]=event.composedPath(),{key}=event,isClose=key===CLOSE_KEY;
 hasModifier(event)||!(key in TOGGLES)||!isClose&&target instanceof Element&&target.closest(OWNERS)||(emit("toggle",TOGGLES[key]),
-isClose||event.preventDefault())}var keys={name:"flowtex-keys",emits:["toggle","linked"],setup(_,{emit}){let lifetime=new Lifetime,
-capture={capture:!0};return vue().onMounted(()=>{lifetime.listen(window,"keydown",event=>press(event,emit),capture);let focus=new Focus(
-document,lifetime,()=>document.querySelector(".flowtex")),keep=()=>requestAnimationFrame(()=>focus.keep());for(let kind of[
-"keydown","click"])lifetime.listen(window,kind,keep,capture);window.location.hash.length>1&&emit("linked",window.location.
-hash)}),vue().onBeforeUnmount(()=>lifetime.end()),()=>null}};async function send(file,address){let query=new URLSearchParams({name:file.name});try{let answer=await fetch(`${address}\
+isClose||event.preventDefault())}function takeLink(emit){let{hash,pathname,search}=window.location;hash.length<=1||(window.
+history.replaceState(window.history.state,"",pathname+search),emit("linked",hash))}var keys={name:"flowtex-keys",emits:[
+"toggle","linked"],setup(_,{emit}){let lifetime=new Lifetime,capture={capture:!0};return vue().onMounted(()=>{lifetime.listen(
+window,"keydown",event=>press(event,emit),capture);let focus=new Focus(document,lifetime,()=>document.querySelector(".fl\
+owtex")),keep=()=>requestAnimationFrame(()=>focus.keep());for(let kind of["keydown","click"])lifetime.listen(window,kind,
+keep,capture);lifetime.listen(window,"hashchange",()=>takeLink(emit)),takeLink(emit)}),vue().onBeforeUnmount(()=>lifetime.
+end()),()=>null}};async function send(file,address){let query=new URLSearchParams({name:file.name});try{let answer=await fetch(`${address}\
 ?${query.toString()}`,{method:"POST",body:file});return answer.ok?"":await answer.text()}catch{return`${file.name}: coul\
 d not be sent`}}var upload={name:"flowtex-upload",props:["address","accept"],emits:["problem","busy"],setup(props,{emit}){
 let{h,ref,onMounted,onBeforeUnmount}=vue(),isOver=ref(!1),input=ref(null),ended=new AbortController,take=async files=>{for(let file of files??
