@@ -10,7 +10,7 @@ import numpy as np
 import scipy
 
 from flowtex._util.array_types import Bools, Floats, Indices
-from flowtex._util.arrays import dot, norm
+from flowtex._util.arrays import cross, dot, norm, row_blocks
 from flowtex.field.steps import Steps, map_steps
 
 #: Twice the area of a triangle over the square of its longest side, below which it is flat.
@@ -21,17 +21,21 @@ GENERIC = np.array([0.36787944, 0.69314718, 0.61983])
 #: Edges of a triangle without area that are shorter than this share of the longest are a point.
 #: Sections have them near nodes that lie in the plane up to rounding in single precision.
 NEEDLE_SHARE = 1e-4
+#: Range of random numbers of nodes, whose sums fit into 64 bits, also as floating-point numbers.
+MOST_RANDOM = 2**50
 #: Cosine of the angle between the normals of a node and a triangle below which an edge is sharp.
 SHARP = 0.86
 
 
 def solid_triangles(p: Floats, corners: Indices) -> Bools:
     """Return which triangles (M,) have an area."""
-    a, b, c = (p[corners[:, k]] for k in range(3))
-    sides = b - a, c - a, c - b
-    longest = np.max([np.einsum("mc,mc->m", side, side) for side in sides], axis=0)
-    area = np.linalg.norm(np.cross(*sides[:2]), axis=-1)
-    return np.asarray(area > FLAT_TRIANGLE * longest)
+    result = np.empty(len(corners), dtype=bool)
+    for block in row_blocks(len(corners), 1):
+        a, b, c = (p[nodes] for nodes in corners[block].T)
+        one, two, three = b - a, c - a, c - b
+        longest = np.maximum(np.maximum(dot(one, one), dot(two, two)), dot(three, three))
+        result[block] = norm(cross(one, two)) > FLAT_TRIANGLE * longest
+    return result
 
 
 def nodal_means(
@@ -75,18 +79,57 @@ def edges_of(triangles: Indices) -> Indices:
 
 def _edge_keys(triangles: Indices) -> Indices:
     """Return a number for each edge, (3 M,), the same for the same nodes."""
-    ahead, behind = (np.roll(triangles, by, axis=1).ravel() for by in (-1, 1))
     count = np.int64(triangles.max(initial=0)) + 1
-    return np.asarray(np.minimum(ahead, behind) * count + np.maximum(ahead, behind))
+    keys = np.empty(triangles.shape, dtype=np.int64)
+    for corner in range(3):
+        begin, end = triangles[:, corner - 2], triangles[:, corner - 1]
+        keys[:, corner] = np.minimum(begin, end) * count + np.maximum(begin, end)
+    return keys.ravel()
+
+
+def _has_equal(numbers: Indices) -> bool:
+    """Return whether two of some numbers are equal."""
+    ordered = np.sort(numbers)
+    return bool((ordered[1:] == ordered[:-1]).any())
 
 
 def repeated(triangles: Indices) -> Bools:
     """Return which triangles (M,) have the corners of another one before them."""
+    result = np.zeros(len(triangles), dtype=bool)
+    # Sums of random numbers of the corners are rarely equal by chance.
+    random = np.random.default_rng(0).integers(0, MOST_RANDOM, int(triangles.max(initial=0)) + 1)
+    if not _has_equal(random[triangles[:, 0]] + random[triangles[:, 1]] + random[triangles[:, 2]]):
+        return result
     corners = np.sort(triangles, axis=1)
     order = np.lexsort(corners.T)
-    result = np.zeros(len(corners), dtype=bool)
     result[order[1:]] = (np.diff(corners[order], axis=0) == 0).all(axis=1)
     return result
+
+
+def once(corners: Indices) -> tuple[Indices, Indices]:
+    """Return triangles with three different corners, each once, without pairs face to face.
+
+    The second value has their numbers among all.
+    """
+    a, b, c = corners.T
+    solid = np.flatnonzero((a != b) & (b != c) & (a != c))
+    corners = corners[solid]
+    low, middle, high = np.sort(corners, axis=1).T
+    # Whether the corners, from the lowest on, go up.
+    ahead = corners[np.arange(len(corners)), (np.argmin(corners, axis=1) + 1) % 3] == middle
+    order = np.lexsort((high, middle, low))
+    begins = np.flatnonzero(
+        np.diff(low[order], prepend=-1)
+        | np.diff(middle[order], prepend=-1)
+        | np.diff(high[order], prepend=-1)
+    )
+    if not len(begins):
+        return corners, solid
+    turns = np.add.reduceat(np.where(ahead, 1, -1)[order], begins)
+    low, middle, high = (corner[order[begins]] for corner in (low, middle, high))
+    up = np.stack([low, middle, high], axis=-1)
+    up[turns < 0] = up[turns < 0][:, [0, 2, 1]]
+    return up[turns != 0], solid[order[begins]][turns != 0]
 
 
 def _border_nodes(triangles: Indices) -> Indices:
@@ -144,22 +187,30 @@ def needle_edges(points: Floats, triangles: Indices) -> Bools:
 
 def triangle_normals(points: Floats, triangles: Indices) -> Floats:
     """Return the cross product of two sides, (M, 3): the normal, as long as twice the area."""
-    a, b, c = (points[corner] for corner in triangles.T)
-    return np.cross(b - a, c - a)
+    result = np.empty((len(triangles), 3), points.dtype)
+    for block in row_blocks(len(triangles), 1):
+        a, b, c = (points[corner] for corner in triangles[block].T)
+        result[block] = cross(b - a, c - a)
+    return result
 
 
 def corner_ends(points: Floats, triangles: Indices) -> tuple[Floats, Floats]:
     """Return least and greatest coordinates of the corners of triangles, (M, 3) each."""
-    a, b, c = (points[corner] for corner in triangles.T)
-    return np.minimum(np.minimum(a, b), c), np.maximum(np.maximum(a, b), c)
+    low, high = np.empty((2, len(triangles), points.shape[1]), points.dtype)
+    for block in row_blocks(len(triangles), 1):
+        a, b, c = (points[corner] for corner in triangles[block].T)
+        low[block] = np.minimum(np.minimum(a, b), c)
+        high[block] = np.maximum(np.maximum(a, b), c)
+    return low, high
 
 
 def connected_parts(beside: Indices) -> Indices:
     """Return the number of the connected part of each triangle, (M,), from neighbours (M, 3)."""
-    rows, corners = np.nonzero(beside >= 0)
-    size = (len(beside), len(beside))
-    ends = rows, beside[rows, corners]
-    graph = scipy.sparse.coo_array((np.ones(len(rows)), ends), shape=size)
+    count = len(beside)
+    own = np.arange(count)[:, None]
+    ends = np.where(beside >= 0, beside, own).ravel()
+    begins = 3 * np.arange(count + 1)
+    graph = scipy.sparse.csr_array((np.ones(len(ends)), ends, begins), shape=(count, count))
     parts = scipy.sparse.csgraph.connected_components(graph, directed=False)[1]
     return np.asarray(parts, np.intp)
 
@@ -206,12 +257,14 @@ def flipped(triangles: Indices, beside: Indices) -> Bools:
     """Return which triangles (M,) face the other way than the first one of their part."""
     result = np.zeros(len(triangles), dtype=bool)
     ahead = np.roll(triangles, -1, axis=1)  # of the edge opposite to a corner
+    # Neighbours that face alike pass their common edge in opposite directions.
+    if not _has_equal((ahead * (np.int64(triangles.max(initial=0)) + 1) + triangles).ravel()):
+        return result
     rows, corners = np.nonzero(beside >= 0)
     other = beside[rows, corners]
     begins = ahead[rows, corners]
     back = np.argmax(beside[other] == rows[:, None], axis=1)
     mutual = beside[other, back] == rows
-    # Neighbours that face alike pass their common edge in opposite directions.
     turned = mutual & (ahead[other, back] == begins)
     if not turned.any():
         return result

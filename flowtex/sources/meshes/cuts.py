@@ -14,6 +14,7 @@ import numpy as np
 
 from flowtex._util.arguments import brief, near_names
 from flowtex._util.array_types import Floats, Indices
+from flowtex._util.arrays import norm
 from flowtex.errors import FieldError
 from flowtex.field.triangles.sharp_edges import split_nodes
 from flowtex.field.triangles.triangle_nodes import (
@@ -152,8 +153,7 @@ def surface_sheet(mesh: Any, cut: Cut | None, velocity: MeshArray, record: Recor
     """Return the nodes of the surface of a mesh, (N,), which :func:`check_cut` has checked."""
     surface, triangles, cells = _surface_of(mesh, cut, velocity, record)
     points = np.asarray(surface.points, dtype=np.float64)
-    areas = np.nan_to_num(np.linalg.norm(triangle_normals(points, triangles), axis=-1) / 2)
-    origin = np.arange(len(points))
+    origin: Indices | slice = slice(None)
     if velocity.where == "cells" and cut is None:
         # Means of cells are those of one face.
         beside = neighbours(points, triangles)
@@ -165,6 +165,7 @@ def surface_sheet(mesh: Any, cut: Cut | None, velocity: MeshArray, record: Recor
             on_points = replace(array, where="points")
             return vectors.values_of(surface, on_points)[origin].astype(np.float64)
         values = vectors.values_of(surface, array).astype(np.float64)
+        areas = np.nan_to_num(norm(triangle_normals(points, triangles)) / 2)
         finite = np.asarray(np.isfinite(values.reshape(len(values), -1)).all(axis=1))
         return nodal_means(values[None], triangles, areas, len(points), finite)[0]
 

@@ -23,6 +23,7 @@ from flowtex.field.steps import Steps, map_steps
 from flowtex.field.triangles.triangle_nodes import (
     connected_parts,
     known_means,
+    once,
     sums_at,
     triangle_normals,
 )
@@ -142,7 +143,7 @@ class Clusters:
         numbers here, (m,); and the bin of each node of the next level.
         """
         together = self._compact(self._bins())[self.places]
-        corners, cells = _once(together[self.triangles])
+        corners, cells = once(together[self.triangles])
         faces = int(self.face.max(initial=0)) + 1
         kinds, cluster = np.unique(together * faces + self.face, return_inverse=True)
         face = self.face[self.triangles[cells, :1]]
@@ -296,32 +297,6 @@ def _sides(areas: Floats, triangles: Indices, count: int, extent: float) -> Floa
     typical = max(float(np.median(nodal[share > 0])), least)
     steps = np.rint(np.log2(np.maximum(nodal, least) / typical))
     return np.asarray(FIRST_EDGES * typical * 2.0**steps)
-
-
-def _once(corners: Indices) -> tuple[Indices, Indices]:
-    """Return triangles with three different corners, each once, without pairs face to face.
-
-    The second value has their numbers among all.
-    """
-    a, b, c = corners.T
-    solid = np.flatnonzero((a != b) & (b != c) & (a != c))
-    corners = corners[solid]
-    low, middle, high = np.sort(corners, axis=1).T
-    # Whether the corners, from the lowest on, go up.
-    ahead = corners[np.arange(len(corners)), (np.argmin(corners, axis=1) + 1) % 3] == middle
-    order = np.lexsort((high, middle, low))
-    begins = np.flatnonzero(
-        np.diff(low[order], prepend=-1)
-        | np.diff(middle[order], prepend=-1)
-        | np.diff(high[order], prepend=-1)
-    )
-    if not len(begins):
-        return corners, solid
-    turns = np.add.reduceat(np.where(ahead, 1, -1)[order], begins)
-    low, middle, high = (corner[order[begins]] for corner in (low, middle, high))
-    up = np.stack([low, middle, high], axis=-1)
-    up[turns < 0] = up[turns < 0][:, [0, 2, 1]]
-    return up[turns != 0], solid[order[begins]][turns != 0]
 
 
 def _untangled(points: Floats, triangles: Indices, normals: Floats, border: Bools) -> Bools:
