@@ -67,6 +67,30 @@ def import_extra(module: str, extra: str) -> Any:
         ) from error
 
 
+def import_package(package: str, what: str) -> Any:
+    """Import a package that is in no extra; the error names the command that installs it.
+
+    Parameters
+    ----------
+    package
+        Name of the package and of its module.
+    what
+        The data that need it, such as ``"a .msh file"``.
+
+    Raises
+    ------
+    ModuleNotFoundError
+        If the package is not installed.
+    """
+    try:
+        return import_module(package)
+    except ModuleNotFoundError as error:
+        raise ModuleNotFoundError(
+            f"{what} needs {package}; install it with python -m pip install {package}",
+            name=package,
+        ) from error
+
+
 def require_pyvista(what: str) -> None:
     """Import PyVista, or raise an error that names the functions that work without it."""
     try:

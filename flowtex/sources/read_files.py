@@ -25,7 +25,7 @@ from flowtex.field.options import FieldOptions
 from flowtex.sources.datasets.read_datasets import read_datasets
 from flowtex.sources.datasets.values import Regions
 from flowtex.sources.inspection.inspect_file import inspect_file
-from flowtex.sources.meshes import parts, plot3d, separate
+from flowtex.sources.meshes import meshio_files, parts, plot3d, separate
 from flowtex.sources.meshes.read_meshes import choose, read_meshes
 from flowtex.sources.meshes.vectors import MeshArray, candidates, catalogue, hidden_nodes, values_of
 from flowtex.sources.notices import Record
@@ -49,6 +49,8 @@ LIST_BYTES = 4_000_000
 LIST_DEPTH = 3
 #: Most files that are examined.
 MOST_FILES = 10_000
+#: Endings of XDMF.
+XDMF = (".xdmf", ".xmf")
 #: Endings of files whose data may be in others of the same name.
 WITH_OTHERS = (*plot3d.SURFACE_SUFFIXES, *plot3d.GRID_SUFFIXES, ".q")
 
@@ -68,12 +70,35 @@ def open_reader(file: Path) -> Any:
             super()._set_defaults()
             self._reader.SetCaseType(0)
 
+    if file.suffix.lower() in XDMF:
+        return _xdmf_reader(file)
     case = file.parent
     in_pieces = (case / "processor0").is_dir() and not (case / "constant" / "polyMesh").is_dir()
     if file.suffix.lower() == ".foam" and in_pieces:
         return DecomposedReader(str(file))
     reader: Any = pv.get_reader(str(file))
     return _CGNSReader(reader) if isinstance(reader, pv.CGNSReader) else reader
+
+
+def _xdmf_reader(file: Path) -> Any:
+    """Return PyVista's reader of XDMF, also for a file without times."""
+    import pyvista as pv
+    from vtkmodules.vtkCommonExecutionModel import vtkStreamingDemandDrivenPipeline
+
+    class XdmfReader(pv.XdmfReader):
+        """PyVista's reader, which fails where there are no times."""
+
+        @property
+        def time_values(self) -> list[float]:
+            """The times of the file; empty if it has none."""
+            information = self.reader.GetOutputInformation(0)
+            times = information.Get(vtkStreamingDemandDrivenPipeline.TIME_STEPS())
+            return list(map(float, times or ()))
+
+        def _set_defaults_post(self) -> None:
+            self._active_time_value = next(iter(self.time_values), 0.0)
+
+    return XdmfReader(str(file))
 
 
 class _CGNSReader:
@@ -106,8 +131,8 @@ class _CGNSReader:
 
 _KNOWN_FORMATS = (
     "a mesh that PyVista reads (.vts, .vtr, .vti, .vtk, .vtu, .vtp, .vtm, .pvd, .cgns, .case, "
-    ".foam and more), PLOT3D (.xyz with .q beside it), or a dataset or table (.nc, .zarr, "
-    ".grib, .json, .geojson, .csv, .txt, .vec)"
+    ".foam, .xdmf and more) or meshio (.msh, .med and more), PLOT3D (.xyz with .q beside it), or a "
+    "dataset or table (.nc, .zarr, .grib, .json, .geojson, .csv, .txt, .vec)"
 )
 #: A URL of which ``pathlib`` has made a path; one letter is a drive.
 _ADDRESS = re.compile(r"[A-Za-z][A-Za-z0-9+.-]+:[/\\]")
@@ -137,6 +162,8 @@ def open_file(path: str | Path) -> OpenFile:
     if layout is not None:
         mesh = plot3d.read_plot3d(grid, layout, plot3d.find_solution(grid))
         return OpenFile(file, mesh, "Velocity")
+    if meshio_files.is_meshio_file(file):
+        return OpenFile(file, meshio_files.read_meshio(file), None)
     try:
         if file.suffix.lower() in plot3d.SURFACE_SUFFIXES:
             return OpenFile(file, *plot3d.read_with_vectors(file))

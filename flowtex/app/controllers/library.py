@@ -40,7 +40,7 @@ SUFFIXES = frozenset(
     [
         *(".vts", ".vtr", ".vti", ".vtk", ".vtu", ".vtp", ".vtm", ".vtmb", ".pvd", ".pvts"),
         *(".pvtr", ".pvti", ".pvtu", ".pvtp", ".xyz", ".x", ".g", ".case", ".cgns", ".foam"),
-        *(".e", ".ex2", ".exii", ".exo", ".stl", ".ply", ".obj"),
+        *(".e", ".ex2", ".exii", ".exo", ".stl", ".ply", ".obj", ".msh", ".med", ".xdmf", ".xmf"),
         *EARTH_SUFFIXES,
     ]
 ).difference(COMMON)

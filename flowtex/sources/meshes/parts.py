@@ -18,6 +18,7 @@ import scipy
 from flowtex._util.array_types import AnyArray, Bools, Floats, Indices
 from flowtex.errors import FieldError
 from flowtex.sources.meshes.cells import check_mesh
+from flowtex.sources.meshes.meshio_files import of_meshio
 from flowtex.sources.meshes.vectors import MeshArray, Sheet, candidates, catalogue, data_of
 from flowtex.sources.notices import Record
 
@@ -238,6 +239,8 @@ def _together(parts: Parts, record: Record) -> pv.UnstructuredGrid:
 def _wrapped(source: Any, label: str) -> pv.DataObject:
     import pyvista as pv
 
+    if type(source).__module__.startswith("meshio"):
+        source = of_meshio(source)
     if hasattr(source, "IsA") and source.IsA("vtkDataObject"):
         mesh = source if isinstance(source, pv.DataObject) else pv.wrap(source)
         check_mesh(mesh)

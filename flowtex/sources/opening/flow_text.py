@@ -224,8 +224,8 @@ def _by_order(frame: Any) -> tuple[Any, str]:
 
 def _davis_names(header: str, count: int) -> list[str]:
     """Return names with units by the header of DaVis, such as ``"position" "mm"`` and others."""
-    places = []
-    others = []
+    places: list[str] = []
+    others: list[str] = []
     for word, unit in DAVIS.findall(header):
         (places if word == "position" else others).append(unit)
     if len(places) < 2 or not others:
@@ -270,7 +270,7 @@ def _by_time(frame: Any) -> Any:
     """Return a table with a column of times, of one with columns for each time, as of COMSOL."""
     pandas = import_extra("pandas", "xarray")
     steps: dict[float, dict[str, str]] = {}
-    places = []
+    places: list[str] = []
     for column in frame.columns:
         match = AT_TIME.match(column)
         if match is None:

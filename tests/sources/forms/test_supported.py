@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import mesh_files
 import pytest
 import text_forms
 from known_flow import check
 from supported import ROWS, Supported, drawn
 
 pytest.importorskip("pyproj")
-MODULES = (text_forms,)
+MODULES = (mesh_files, text_forms)
 
 
 @pytest.mark.parametrize("row", ROWS, ids=lambda row: row.make.__name__)
