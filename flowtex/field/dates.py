@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from flowtex._util.arguments import is_number
+from flowtex._util.host_arrays import host_array
 from flowtex.errors import FieldError, import_extra
 
 if TYPE_CHECKING:
@@ -29,7 +30,7 @@ def as_seconds(times: Any, time_unit: str) -> tuple[ArrayLike | None, str, Any]:
     """Return times, their unit, and the date at time 0: dates and spans become seconds."""
     start = None
     try:
-        values = np.asarray(times)
+        values = host_array("times", times)
         if values.dtype.kind == "O" and values.size and hasattr(values.flat[0], "isoformat"):
             start = values.flat[0]
             # Other calendars have days that datetime64 lacks; their differences are spans.

@@ -26,6 +26,7 @@ from flowtex.field.formula import Formula
 from flowtex.field.grids.grid_nodes import grid_nodes
 from flowtex.field.grids.grid_surface import GridSurface
 from flowtex.field.node_surface import IndexVelocity
+from flowtex.field.plain_arrays import plain_grid
 from flowtex.field.quantities import FieldQuantities
 from flowtex.field.scalars import Scalars
 from flowtex.field.steps import LazySteps, Steps, map_steps, moves, scaled_steps, typical_steps
@@ -191,9 +192,9 @@ class FlowField(FieldConstructors, FieldQuantities):
     @classmethod
     def from_arrays(
         cls,
-        points: ArrayLike,
-        velocity: Any,
-        *,
+        points: Any,
+        velocity: Any = None,
+        *components: Any,
         times: ArrayLike | None = None,
         valid: ArrayLike | None = None,
         periodic: str | None = None,
@@ -219,9 +220,15 @@ class FlowField(FieldConstructors, FieldQuantities):
             (J, I).
         velocity
             Velocity at the nodes, (J, I, 2 or 3), or (T, J, I, 2 or 3) for a time-varying field, in
-            ``velocity_unit``. NaN and masked entries blank a node; one that has data at some times
-            is at rest at the others, without streaks, and the scalar ``"no data"`` is 1 there.
+            ``velocity_unit``; or complex, u + iv, or with the components first. NaN and masked
+            entries blank a node; one that has data at some times is at rest at the others, without
+            streaks, and the scalar ``"no data"`` is 1 there.
             Steps that are read lazily (``LazySteps``) stay lazy: at most three tell this.
+        *components
+            Further arrays: ``from_arrays(x, y, u, v)`` takes those of ``plt.streamplot`` and
+            ``plt.quiver``, with u and v of the shape (J, I) or (T, J, I). ``from_arrays(u, v)``
+            counts positions from 0, and ``from_arrays(x, y, z, u, v, w)`` is a surface in space.
+            Quantities of pint and astropy have their units.
         times
             Time of each step, (T,), strictly increasing; 0, 1, 2, ... by default. Dates
             (``datetime64``, or cftime's) become seconds since the first, and are shown as dates.
@@ -284,7 +291,9 @@ class FlowField(FieldConstructors, FieldQuantities):
         >>> flowtex.FlowField.from_arrays((x, y), v, name="a vortex").shape
         (31, 41)
         """
-        texts = length_unit, time_unit, velocity_unit
+        plain = plain_grid(points, velocity, components)
+        points, velocity = plain.points, plain.velocity
+        texts = length_unit or plain.length_unit, time_unit, velocity_unit or plain.velocity_unit
         t, scale, v, data, words = prepared(times, texts, velocity, scalars, units, axes=2)
         words |= {"name": name, "vectors": vectors, "projection": projection}
         words |= {"long_names": dict(long_names or {}), "on_cells": tuple(cell_scalars or ())}

@@ -15,6 +15,7 @@ from typing import Any, TypeVar
 
 from numpy.typing import ArrayLike
 
+from flowtex._util.arguments import brief
 from flowtex.errors import FieldError
 
 #: Description of all other arguments in docstrings.
@@ -101,6 +102,13 @@ class FieldOptions:
     def __post_init__(self) -> None:
         """Join the names of components to ``vectors``."""
         names = [name for name in (self.u, self.v, self.w) if name is not None]
+        for argument in ("vectors", *"uvw"):
+            name = getattr(self, argument)
+            if not isinstance(name, (str, type(None))):
+                raise FieldError(
+                    f"{argument} is {brief(name)}; expected the name of an array. Pass arrays "
+                    "themselves by position, as in flowtex.show(x, y, u, v)"
+                )
         if not names:
             return
         if self.vectors is not None or self.u is None or self.v is None:

@@ -14,10 +14,11 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from flowtex._util.array_types import Bools, Floats
+from flowtex._util.host_arrays import host_array, unit_text
 from flowtex.errors import FieldError
 from flowtex.field.dates import as_seconds
 from flowtex.field.steps import LazySteps, map_steps, typical_steps
-from flowtex.field.units import speed_unit, velocity_units
+from flowtex.field.units import speed_unit, symbol, velocity_units
 
 LINE_WIDTH = 1e-7  #: A surface narrower than this share of its length is a line.
 LENGTHS = (1e-30, 1e30)  #: Range of lengths in single precision.
@@ -50,13 +51,9 @@ def node_positions(points: Any) -> Any:
 
 def as_numbers(name: str, values: ArrayLike) -> tuple[Floats, Any]:
     """Return values as float64, copied if necessary, and the nodes (J, I) that a mask hides."""
+    values = host_array(name, values)
     mask = np.ma.getmaskarray(values) if np.ma.isMaskedArray(values) else None
-    try:
-        array = np.asarray(np.ma.getdata(values))
-    except (TypeError, ValueError) as error:
-        raise FieldError(
-            f"{name} is not an array ({error}); expected real numbers, the same number in every row"
-        ) from error
+    array = np.asarray(np.ma.getdata(values))
     if array.dtype.kind not in "fiub":
         raise FieldError(
             f"{name} has type {array.dtype}; expected real numbers: convert it with "
@@ -80,6 +77,7 @@ ALL_AT_REST = (
 
 def with_gaps(name: str, values: ArrayLike) -> Floats:
     """Return values as float64, copied if necessary, NaN where a masked array hides them."""
+    values = host_array(name, values)
     array, _ = as_numbers(name, values)
     if isinstance(values, np.ma.MaskedArray) and np.ma.is_masked(values):
         array = np.where(np.ma.getmaskarray(values), np.nan, array)
@@ -111,8 +109,6 @@ def shape_faults(
     hint = ""
     if v.ndim in (3, 4) and v.shape[-3:-1] == grid[::-1] and grid[0] != grid[1]:
         hint = ". The two axes seem to be swapped: arrays are (j, i), try np.swapaxes"
-    elif v.ndim in (3, 4) and v.shape[-2:] == grid:
-        hint = ". The components seem to come first: try np.moveaxis(velocity, 0, -1)"
     faults += nodal_faults(grid, v, steps, times, valid, scalars, hint)
     if periodic is not None and not (isinstance(periodic, str) and set(periodic) <= {"i", "j"}):
         faults.append(
@@ -321,6 +317,7 @@ def prepared(
 
     The texts are the units of length, time and velocity; ``axes`` counts those of the nodes.
     """
+    texts = (texts[0], texts[1] or symbol(unit_text(times)), texts[2])
     times, time_unit, start = as_seconds(times, texts[1])
     t = None if times is None else with_gaps("times", times)
     scale, time_unit, velocity_unit = velocity_units(texts[0], time_unit, texts[2])

@@ -44,6 +44,7 @@ from flowtex.host.view import (
 from flowtex.pyramid.stored import StoredPyramid
 from flowtex.rendering.webgl.client_data import ClientData
 from flowtex.rendering.webgl.protocol import Header, part_info, part_text, zipped
+from flowtex.scene.array_arguments import takes_arrays
 from flowtex.scene.options import Appearance, ViewOptions
 from flowtex.textures.tiles.shared import shared_pyramid
 
@@ -100,6 +101,7 @@ class Page:
     steps: int
 
 
+@takes_arrays()
 @accepts_options(FieldOptions, Appearance, ViewOptions)
 def export(
     mesh: Any,
@@ -126,8 +128,8 @@ def export(
     ----------
     mesh
         PyVista mesh, list of meshes in time, xarray dataset, :class:`~flowtex.FlowField`, path of a
-        file, or a plotter with a flow texture, whose page also shows its other meshes and its
-        labels.
+        file, plain arrays by position, ``x, y, u, v`` as in ``plt.streamplot``, or a plotter with a
+        flow texture, whose page also shows its other meshes and its labels.
     path
         File to write, such as ``"page.html"``, ``"flow.mjs"`` or ``"flow.json"``; an existing file
         is replaced when the new one is complete.

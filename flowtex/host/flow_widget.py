@@ -16,9 +16,10 @@ from concurrent.futures import wait
 from contextlib import suppress
 from contextvars import copy_context
 from pathlib import Path
-from typing import Any, TypeGuard
+from typing import Any, TypeGuard, overload
 
 import numpy as np
+from numpy.typing import ArrayLike
 from PIL import Image
 
 from flowtex._util.array_types import Bytes
@@ -37,6 +38,7 @@ from flowtex.host.view import CHOSEN, WebView, browser_options, client_module, w
 from flowtex.rendering.camera import Camera, CameraValues, can_share_camera
 from flowtex.rendering.webgl.marks import MARK_PARTS
 from flowtex.rendering.webgl.protocol import Header
+from flowtex.scene.array_arguments import joins_arrays
 from flowtex.scene.fields import read_field, share_field
 from flowtex.scene.options import SPEED, Appearance, AppearanceAttributes, ViewOptions
 from flowtex.scene.scene import NO_IMAGE, Change, Scene, follow, lay_image
@@ -205,13 +207,30 @@ class FlowWidget(AppearanceAttributes, SettingTraits, Displayed):
     bar = traitlets.Bool(default_value=True).tag(sync=True)
     axes = CheckedTrait(lambda _, value: ViewOptions(axes=value).axes)
 
-    @accepts_options(FieldOptions, Appearance, ViewOptions)
+    @overload
     def __init__(
         self,
         mesh: Any,
         vectors: str | None = None,
         scalars: str | bool | None = None,  # noqa: FBT001 False is "by nothing", as in PyVista
         cmap: Any | None = None,
+        *,
+        size: tuple[int, int] = (0, 400),
+        bar: bool = True,
+        **options: Any,
+    ) -> None: ...
+    @overload
+    def __init__(
+        self, first: ArrayLike, second: ArrayLike, /, *others: Any, **options: Any
+    ) -> None: ...
+    @joins_arrays(1)
+    @accepts_options(FieldOptions, Appearance, ViewOptions)
+    def __init__(
+        self,
+        mesh: Any,
+        vectors: Any = None,
+        scalars: Any = None,
+        cmap: Any = None,
         *,
         size: tuple[int, int] = (0, 400),
         bar: bool = True,
@@ -223,8 +242,8 @@ class FlowWidget(AppearanceAttributes, SettingTraits, Displayed):
         ----------
         mesh
             PyVista mesh, list of meshes in time, xarray dataset, :class:`~flowtex.FlowField`, path
-            of a file, or a plotter with a flow texture, whose widget also shows its other meshes
-            and its labels.
+            of a file, plain arrays by position, ``x, y, u, v`` as in ``plt.streamplot``, or a
+            plotter with a flow texture, whose widget also shows its other meshes and its labels.
         size, bar
             As the attributes of these names.
         {options}

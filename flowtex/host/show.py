@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 from flowtex._util.arguments import checked_size
 from flowtex.errors import FieldError, require_pyvista
 from flowtex.field.options import FieldOptions, accepts_options
+from flowtex.scene.array_arguments import takes_arrays
 from flowtex.scene.fields import read_field
 from flowtex.scene.options import Appearance, Options, ViewOptions
 
@@ -21,6 +22,7 @@ WINDOW_SIZE = (1024, 768)
 BACKEND = "flowtex"
 
 
+@takes_arrays()
 @accepts_options(FieldOptions, Appearance, ViewOptions)
 def show(mesh: Any, *, size: tuple[int, int] | None = None, **options: Any) -> FlowWidget | None:
     """Show a flow as a widget in a notebook, otherwise in a window or on a page in the browser.
@@ -31,8 +33,8 @@ def show(mesh: Any, *, size: tuple[int, int] | None = None, **options: Any) -> F
     Parameters
     ----------
     mesh
-        PyVista mesh, list of meshes in time, xarray dataset, :class:`~flowtex.FlowField`, or path
-        of a file.
+        PyVista mesh, list of meshes in time, xarray dataset, :class:`~flowtex.FlowField`, path of a
+        file, or plain arrays by position: ``x, y, u, v`` as in ``plt.streamplot``.
     size
         Width and height of the window in pixels; 1024 x 768 by default, and in a notebook the width
         of the cell. A page has the size of the browser's window.

@@ -23,6 +23,7 @@ from flowtex.plotting.handle import FlowHandle
 from flowtex.rendering.camera import CAMERA_LIMITS, Camera, apply_camera, read_camera
 from flowtex.rendering.webgl.bodies import MOST_LABELS, MOST_VERTICES, Bodies, Body, Label, Light
 from flowtex.scene.annotations import difference_text
+from flowtex.scene.array_arguments import joins_arrays
 from flowtex.scene.options import Appearance, Options, ViewOptions
 from flowtex.scene.scene import Scene, make_scenes
 from flowtex.textures.images import as_image
@@ -56,13 +57,14 @@ class FlowtexComponent:
         #: Renderers whose camera sees planes of several directions from aside.
         self._turned: WeakSet[Any] = WeakSet()
 
+    @joins_arrays(1)
     @accepts_options(FieldOptions, Appearance)
     def add(
         self,
         mesh: Any,
-        vectors: str | None = None,
-        scalars: str | bool | None = None,  # noqa: FBT001 False is "by nothing", as in PyVista
-        cmap: str | Any | None = None,
+        vectors: Any = None,
+        scalars: Any = None,
+        cmap: Any = None,
         *,
         scalar_bar_args: Mapping[str, Any] | None = None,
         reset_camera: bool | None = None,
@@ -79,8 +81,8 @@ class FlowtexComponent:
         Parameters
         ----------
         mesh
-            PyVista mesh, list of meshes in time, xarray dataset, :class:`~flowtex.FlowField`, or
-            path of a file.
+            PyVista mesh, list of meshes in time, xarray dataset, :class:`~flowtex.FlowField`, path
+            of a file, or plain arrays by position: ``x, y, u, v`` as in ``plt.streamplot``.
         scalar_bar_args
             As for ``plotter.add_mesh``, without arguments for the colours. Sizes, places and fonts
             that are not given follow from the size of the view, those of horizontal bars too.

@@ -24,6 +24,7 @@ from flowtex.field.uncertainty import nodal_steps, with_uncertainty
 from flowtex.settings import Settings
 from flowtex.sources.datasets import is_dataset
 from flowtex.sources.meshes.vectors import with_array
+from flowtex.sources.plain_arrays import are_labelled, is_plain, read_arrays, read_labelled
 from flowtex.textures.tiles.pyramid import Pyramid
 from flowtex.textures.tiles.shared import has_pyramid, shared_pyramid
 from flowtex.trace.slices import TraceSlices
@@ -76,7 +77,11 @@ def read_field(mesh: Any, options: FieldOptions, time: float | str | None = None
     array, uncertainty = getattr(options, ARRAY, None), options.uncertainty
     if array is not None and hasattr(mesh, "point_data"):
         mesh, array = with_array(mesh, DATA, array), None
-    field = _read(mesh, options, time)
+    if is_plain(mesh) and not is_dataset(mesh):
+        own = {} if array is None else {DATA: array}
+        field, array = read_arrays(mesh, options, own), None
+    else:
+        field = _read(mesh, options, time)
     if array is not None:
         steps = nodal_steps(field, array, "scalars", "the name of an array, or ")
         field = field.same_flow(scalars={**field.scalars, DATA: steps})
@@ -89,6 +94,8 @@ def _read(mesh: Any, options: FieldOptions, time: float | str | None) -> FlowFie
     if (stored := _stored(mesh, options, time)) is not None:
         return stored
     choices = options.given
+    if are_labelled(mesh):
+        return read_labelled(mesh, options)
     if is_dataset(mesh):
         options.refuse(OF_MESHES, "meshes, but this is a dataset")
         return FlowField.from_xarray(mesh, **choices)

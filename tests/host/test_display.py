@@ -37,7 +37,7 @@ def test_a_page_has_no_size_and_no_bar_of_vtk(monkeypatch: pytest.MonkeyPatch) -
 def test_the_size_of_a_window_is_checked(monkeypatch: pytest.MonkeyPatch) -> None:
     host(monkeypatch, display=True)
     with pytest.raises(FieldError, match="size is 3; expected width and height in pixels"):
-        flowtex.show(gyre(), size=3)  # type: ignore[arg-type]
+        flowtex.show(gyre(), size=3)  # type: ignore[call-overload]
 
 
 @pytest.mark.parametrize(

@@ -41,6 +41,7 @@ from flowtex.plotting.offscreen.plotter import NOTHING_SEEN, OffscreenPlotter
 from flowtex.rendering.camera import CAMERA_LIMITS, Camera
 from flowtex.rendering.cpu.shade import mean_colours
 from flowtex.rendering.map_overlay import ground_colours
+from flowtex.scene.array_arguments import takes_arrays
 from flowtex.scene.fields import is_stored, read_field
 from flowtex.scene.options import Appearance, Options, ViewOptions
 from flowtex.scene.scene import make_scenes
@@ -59,6 +60,7 @@ EDGE_COLOR = "0.3"  #: Colour of the border of a legend's patches.
 FIRST_SIZE = (600, 400)  #: Width and height of a plot whose size is not known yet, in pixels.
 
 
+@takes_arrays()
 @accepts_options(FieldOptions, Appearance, ViewOptions)
 def extent(
     mesh: Any,
@@ -117,6 +119,7 @@ def extent(
     return float(x - half * aspect), float(x + half * aspect), float(y - half), float(y + half)
 
 
+@takes_arrays(1)
 @accepts_options(FieldOptions, Appearance)
 def axes(
     ax: Axes,
@@ -189,6 +192,7 @@ def axes(
     return image
 
 
+@takes_arrays()
 @accepts_options(FieldOptions, Appearance)
 def dynamic_map(mesh: Any, *, clock: float = 0.0, supersampling: int = 1, **options: Any) -> Any:
     """Return a flat flow as a HoloViews element that is redrawn for the range of its plot.

@@ -31,6 +31,7 @@ from flowtex.plotting.offscreen.encoders import (
 )
 from flowtex.plotting.offscreen.plotter import OffscreenPlotter
 from flowtex.rendering.uniforms import WAVE_PIXELS
+from flowtex.scene.array_arguments import takes_arrays
 from flowtex.scene.fields import read_field
 from flowtex.scene.options import Appearance, Options, ViewOptions
 from flowtex.scene.scene import make_scenes
@@ -152,6 +153,7 @@ class Movie:
     closed: bool
 
 
+@takes_arrays()
 @accepts_options(FieldOptions, Appearance, ViewOptions)
 def movie(
     mesh: Any,
@@ -172,8 +174,8 @@ def movie(
     Parameters
     ----------
     mesh
-        PyVista mesh, list of meshes in time, xarray dataset, :class:`~flowtex.FlowField`, or path
-        of a file.
+        PyVista mesh, list of meshes in time, xarray dataset, :class:`~flowtex.FlowField`, path of a
+        file, or plain arrays by position: ``x, y, u, v`` as in ``plt.streamplot``.
     path
         File to write: ``.mp4``, ``.gif`` or ``.webp``. An existing file is replaced when the new
         one is complete.

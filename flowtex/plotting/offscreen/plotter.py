@@ -18,6 +18,7 @@ from flowtex.rendering.camera import CAMERA_LIMITS, read_camera
 from flowtex.rendering.diagnostics import require_opengl
 from flowtex.rendering.vtk.contexts import uninterrupted
 from flowtex.scene.annotations import Layout, annotate_views
+from flowtex.scene.array_arguments import takes_arrays
 from flowtex.scene.fields import TracedFlow
 from flowtex.scene.options import Appearance, Options, ViewOptions
 from flowtex.scene.scene import Scene, make_scenes
@@ -162,6 +163,7 @@ def _check_size(size: tuple[int, int], supersampling: int) -> None:
         )
 
 
+@takes_arrays()
 @accepts_options(FieldOptions, Appearance, ViewOptions)
 def render(
     mesh: Any,
@@ -179,8 +181,8 @@ def render(
     Parameters
     ----------
     mesh
-        PyVista mesh, list of meshes in time, xarray dataset, :class:`~flowtex.FlowField`, or path
-        of a file.
+        PyVista mesh, list of meshes in time, xarray dataset, :class:`~flowtex.FlowField`, path of a
+        file, or plain arrays by position: ``x, y, u, v`` as in ``plt.streamplot``.
     size
         Width and height in pixels; each of two views has half the width.
     time

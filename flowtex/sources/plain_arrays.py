@@ -1,0 +1,254 @@
+"""Plain arrays as a field, for all functions that draw: by position, by name, or with labels.
+
+:mod:`flowtex.field.plain_arrays` has the forms of the arrays. Dictionaries, such as those of
+``numpy.load`` and ``scipy.io.loadmat``, and structured arrays have them by name. Positions on the
+Earth, and scattered points, become a dataset, which the readers of datasets place.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from flowtex._util.host_arrays import host_array, is_array
+from flowtex.errors import FieldError, import_extra
+from flowtex.field.field import FlowField
+from flowtex.field.options import FieldOptions
+from flowtex.field.plain_arrays import PlainFlow, read_plain
+from flowtex.field.validation import with_gaps
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+#: Arguments that have no meaning for arrays.
+NOT_OF_ARRAYS = (
+    *("plane", "slice", "contour", "block", "preference"),
+    *("level", "sel", "isel", "mask"),
+)
+#: Names of the positions, in small letters.
+PLACES = (("x", "y", "z"), ("x", "y"))
+EARTH_PLACES = (("lon", "lat"), ("longitude", "latitude"))
+#: Names of the components, in small letters.
+VELOCITIES = (
+    *(("u", "v", "w"), ("u", "v")),
+    *(("vx", "vy", "vz"), ("vx", "vy"), ("ux", "uy")),
+    ("velocity",),
+)
+TIMES = ("time", "times", "t")  #: Names of times, in small letters.
+
+
+def is_plain(data: Any) -> bool:
+    """Return whether data are arrays, by position or by name, without loading a library."""
+    if isinstance(data, Mapping) or _has_files(data):
+        return any(is_array(data[name]) for name in data)
+    if isinstance(data, tuple):
+        return bool(data) and all(map(is_array, data))
+    return is_array(data)
+
+
+def are_labelled(data: Any) -> bool:
+    """Return whether data are two or four DataArrays by position: ``u, v`` or ``x, y, u, v``."""
+    if not isinstance(data, tuple) or len(data) not in (2, 4):
+        return False
+    return all(type(item).__name__ == "DataArray" for item in data)
+
+
+def read_arrays(data: Any, options: FieldOptions, scalars: Mapping[str, Any]) -> FlowField:
+    """Return the field of plain arrays, with scalars of the same nodes.
+
+    Raises a FieldError for an argument of other data, and for names or shapes without a meaning.
+    """
+    options.refuse(NOT_OF_ARRAYS, "meshes, files and datasets, but these are arrays")
+    is_named = isinstance(data, Mapping) or _has_files(data) or _fields_of(data) is not None
+    if is_named:
+        return _read_named(data, options, scalars)
+    if options.vectors is not None:
+        raise FieldError(f"vectors is {options.vectors!r}, but the arrays have no names; omit it")
+    arrays = data if isinstance(data, tuple) else (data,)
+    return _field(read_plain(arrays), options, scalars)
+
+
+def read_labelled(data: tuple[Any, ...], options: FieldOptions) -> FlowField:
+    """Return the field of DataArrays ``u, v`` or ``x, y, u, v``, by their labels."""
+    *places, u, v = data
+    if None in (u.name, v.name) or u.name == v.name:
+        u, v = u.rename("u"), v.rename("v")
+    ds = u.to_dataset().assign({v.name: v})
+    for name, place in zip("xy", places, strict=False):
+        ds = ds.assign_coords({place.name or name: place})
+    given = {"vectors": f"{u.name},{v.name}", **options.given}
+    return FlowField.from_xarray(ds, **given)
+
+
+def _field(
+    flow: PlainFlow,
+    options: FieldOptions,
+    scalars: Mapping[str, Any],
+    *,
+    on_earth: bool = False,
+) -> FlowField:
+    on_earth = on_earth or options.projection is not None or bool(options.globe)
+    if on_earth or flow.scattered or options.components is not None:
+        return _labelled_field(flow, options, scalars, on_earth=on_earth)
+    return FlowField.from_arrays(
+        flow.points,
+        flow.velocity,
+        times=options.times,
+        periodic=options.periodic,
+        sign_free=bool(options.sign_free),
+        scalars=scalars,
+        length_unit=flow.length_unit,
+        velocity_unit=flow.velocity_unit,
+    )
+
+
+def _labelled_field(
+    flow: PlainFlow, options: FieldOptions, scalars: Mapping[str, Any], *, on_earth: bool
+) -> FlowField:
+    """Return the field of arrays that a reader of datasets or tables places."""
+    data: Any = _dataset(flow, options.times, scalars, on_earth=on_earth)
+    if flow.scattered:
+        # Rows of a lattice in any order become a grid.
+        data = _table_of(data)
+    chosen = replace(options, vectors="u,v", times=None)
+    if on_earth and options.components is None:
+        chosen = replace(chosen, components="earth")
+    return FlowField.from_xarray(data, **_without(chosen, "uncertainty"))
+
+
+def _without(options: FieldOptions, name: str) -> dict[str, Any]:
+    """Return the given options without one, which the caller applies."""
+    return {key: value for key, value in options.given.items() if key != name}
+
+
+def _dataset(
+    flow: PlainFlow, times: Any, scalars: Mapping[str, Any], *, on_earth: bool
+) -> xr.Dataset:
+    """Return a dataset of arrays on x and y, or on longitude and latitude in degrees."""
+    xarray = import_extra("xarray", "xarray")
+    points = flow.points
+    if not isinstance(points, tuple):
+        points = tuple(np.moveaxis(points, -1, 0))
+    if len(points) != 2:
+        raise FieldError(
+            f"{len(points)} positions are given; expected two, longitude and latitude, or x and y"
+        )
+    names = ("lon", "lat") if on_earth else ("x", "y")
+    one, other = (with_gaps(name, part) for name, part in zip(names, points, strict=True))
+    if flow.scattered:
+        dims: tuple[str, ...] = ("point",)
+        coordinates = {names[0]: (dims, one), names[1]: (dims, other)}
+    elif one.ndim == 1:
+        dims = names[::-1]
+        coordinates = {names[0]: ((names[0],), one), names[1]: ((names[1],), other)}
+    else:
+        dims = ("j", "i")
+        coordinates = {names[0]: (dims, one), names[1]: (dims, other)}
+    velocity = with_gaps("velocity", flow.velocity)
+    series = ("time", *dims)
+    arrays = {"u": velocity[..., 0], "v": velocity[..., 1], **scalars}
+    variables = {}
+    for name, array in arrays.items():
+        values = with_gaps(name, array)
+        variables[name] = series[-values.ndim :], values
+    ds = xarray.Dataset(variables, coordinates)
+    if times is not None:
+        ds = ds.assign_coords(time=("time", host_array("times", times)))
+    for name in "uv":
+        ds[name].attrs["units"] = flow.velocity_unit
+    place_units = ("degrees_east", "degrees_north") if on_earth else (flow.length_unit,) * 2
+    for name, unit in zip(names, place_units, strict=True):
+        ds[name].attrs["units"] = unit
+    return ds
+
+
+def _table_of(points: xr.Dataset) -> Any:
+    """Return points as a table, whose columns are named with their units."""
+    columns = {}
+    for name, array in points.reset_coords().items():
+        unit = array.attrs["units"] if array.attrs.get("units") else ""
+        columns[str(name)] = f"{name} [{unit}]" if unit else str(name)
+    frame: Any = points.reset_coords().to_dataframe().reset_index(drop=True)
+    return frame.rename(columns=columns)
+
+
+def _has_files(data: Any) -> bool:
+    """Return whether data are the arrays of an ``.npz`` file, which ``numpy.load`` opens."""
+    return isinstance(data, np.lib.npyio.NpzFile)
+
+
+def _fields_of(data: Any) -> tuple[str, ...] | None:
+    """Return the names of the fields of a structured array; ``None`` for other data."""
+    return getattr(getattr(data, "dtype", None), "names", None)
+
+
+def _read_named(data: Any, options: FieldOptions, scalars: Mapping[str, Any]) -> FlowField:
+    """Return the field of arrays by name; other arrays of the same nodes are scalars."""
+    keys = [str(key) for key in _fields_of(data) or data]
+    known: dict[str, str] = {}
+    for key in keys:
+        if is_array(data[key]):
+            known.setdefault(key.lower(), key)
+    if len({np.shape(data[key]) for key in known.values()}) == 1 and np.ndim(data[keys[0]]) == 1:
+        columns = {key: host_array(key, data[key]) for key in known.values()}
+        frame = import_extra("pandas", "xarray").DataFrame(columns)
+        return FlowField.from_xarray(frame, **_without(options, "uncertainty"))
+    lon_lat = _first(EARTH_PLACES, known)
+    places = _first(PLACES, known) or lon_lat
+    velocity = _velocity_names(options.vectors, known)
+    if not velocity:
+        raise FieldError(
+            f"the arrays are named {', '.join(keys)}; expected x, y, u and v. Name the components, "
+            "as in vectors='vx,vy', or pass the arrays by position: x, y, u, v"
+        )
+    flow = read_plain(_by_position([data[key] for key in places], [data[key] for key in velocity]))
+    shape = np.shape(flow.velocity)[:-1]
+    steps = shape[:-2]
+    nodal = {}
+    times: Any = options.times
+    for name, key in known.items():
+        own_shape = np.shape(data[key])
+        if key in (*places, *velocity):
+            continue
+        if name in TIMES and steps and own_shape == steps and times is None:
+            times = host_array(name, data[key])
+        elif own_shape in (shape, shape[-2:]):
+            nodal[key] = data[key]
+    options = replace(options, vectors=None, times=times)
+    on_earth = bool(places) and places == lon_lat
+    return _field(flow, options, {**nodal, **scalars}, on_earth=on_earth)
+
+
+def _by_position(places: list[Any], velocity: list[Any]) -> tuple[Any, ...]:
+    """Return arrays in the form that the numbers of positions and components allow."""
+    if len(velocity) == 2:
+        return (*places[:2], *velocity)
+    joined = velocity[0] if len(velocity) == 1 else list(map(np.asanyarray, velocity))
+    if not places:
+        return (joined,)
+    return (tuple(places), joined)
+
+
+def _velocity_names(vectors: str | None, known: Mapping[str, str]) -> tuple[str, ...]:
+    """Return the names of the components, those that the user names first."""
+    if vectors is None:
+        return _first(VELOCITIES, known)
+    names = tuple(name.strip() for name in vectors.split(","))
+    missing = [name for name in names if name not in known.values()]
+    if missing:
+        raise FieldError(
+            f"vectors is {vectors!r}, and there is no array {missing[0]!r}; expected names among "
+            f"{', '.join(known.values())}"
+        )
+    return names
+
+
+def _first(choices: Iterable[tuple[str, ...]], known: Mapping[str, str]) -> tuple[str, ...]:
+    """Return the first of several groups of names that all exist, as they are spelt."""
+    for names in choices:
+        if all(name in known for name in names):
+            return tuple(known[name] for name in names)
+    return ()
