@@ -73,7 +73,7 @@ def import_package(package: str, what: str) -> Any:
     Parameters
     ----------
     package
-        Name of the package and of its module.
+        Name of the package; that of its module has ``_`` for ``-``.
     what
         The data that need it, such as ``"a .msh file"``.
 
@@ -83,7 +83,7 @@ def import_package(package: str, what: str) -> Any:
         If the package is not installed.
     """
     try:
-        return import_module(package)
+        return import_module(package.replace("-", "_"))
     except ModuleNotFoundError as error:
         raise ModuleNotFoundError(
             f"{what} needs {package}; install it with python -m pip install {package}",

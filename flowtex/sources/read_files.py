@@ -25,6 +25,7 @@ from flowtex.field.options import FieldOptions
 from flowtex.sources.datasets.read_datasets import read_datasets
 from flowtex.sources.datasets.values import Regions
 from flowtex.sources.inspection.inspect_file import inspect_file
+from flowtex.sources.inspection.other_programs import advice_of
 from flowtex.sources.meshes import meshio_files, parts, plot3d, separate
 from flowtex.sources.meshes.read_meshes import choose, read_meshes
 from flowtex.sources.meshes.vectors import MeshArray, candidates, catalogue, hidden_nodes, values_of
@@ -200,6 +201,8 @@ def _path_problem(file: Path) -> str:
             "this is a pickle, which can run any program when it is loaded, so it is refused; "
             'save the mesh as VTK instead, as in mesh.save("flow.vts")'
         )
+    if advice := advice_of(file):
+        return advice
     try:
         with file.open("rb") as stream:
             # OpenFOAM marks a case with an empty file.

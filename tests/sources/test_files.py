@@ -31,8 +31,8 @@ pytestmark = pytest.mark.filterwarnings(
 
 KNOWN = (
     "a mesh that PyVista reads (.vts, .vtr, .vti, .vtk, .vtu, .vtp, .vtm, .pvd, .cgns, .case, "
-    ".foam and more), PLOT3D (.xyz with .q beside it), or a dataset or table (.nc, .zarr, "
-    ".grib, .json, .geojson, .csv, .vec)"
+    ".foam, .xdmf and more) or meshio (.msh, .med and more), PLOT3D (.xyz with .q beside it), or a "
+    "dataset or table (.nc, .zarr, .grib, .json, .geojson, .csv, .txt, .vec)"
 )
 
 

@@ -43,6 +43,7 @@ MODELS = (
     ("MPAS", ("verticesOnCell",), (("lonVertex", "latVertex"), ("xVertex", "yVertex"))),
     ("TUFLOW FV", ("cell_node",), (("node_X", "node_Y"),)),
     ("TELEMAC", (TELEMAC,), (("x", "y"),)),
+    ("ADCIRC", ("element",), (("x", "y"),)),
 )
 #: Variables with the number of corners of each face.
 COUNTS = {"verticesOnCell": "nEdgesOnCell", "cell_node": "cell_Nvert"}
@@ -154,6 +155,9 @@ def _completed(ds: xr.Dataset) -> xr.Dataset:
     """Return a dataset of TUFLOW FV or TELEMAC in the form of those of other models."""
     if (faces := ds.attrs.get(TELEMAC)) is not None:
         ds = ds.assign({TELEMAC: ((f"{TELEMAC}_faces", f"{TELEMAC}_corners"), np.asarray(faces))})
+        for name, (words, unit) in dict(ds.attrs.get("variables", {})).items():
+            ds[name].attrs.setdefault("long_name", words.strip().lower())
+            ds[name].attrs.setdefault("units", unit.strip().lower())
     if "ResTime" in ds and ds["ResTime"].ndim == 1:
         time = ds["ResTime"].assign_attrs(axis="T")
         ds = ds.assign_coords({str(time.dims[0]): time.variable})

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from flowtex._util.arguments import brief, checked_source
-from flowtex.errors import FieldError, import_extra
+from flowtex.errors import FieldError, import_extra, import_package
 from flowtex.field import units
 from flowtex.sources.datasets import labels
 from flowtex.sources.datasets.axes import TIMES, as_slice, is_dates
@@ -23,6 +23,7 @@ from flowtex.sources.inspection.inspect_file import NETCDF, inspect_file
 from flowtex.sources.models.conventions import with_mesh_axes
 from flowtex.sources.notices import Record
 from flowtex.sources.opening import flow_text, tables
+from flowtex.sources.reader_errors import check_memory
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -33,6 +34,8 @@ LETTERS = ("Times", "xtime")
 DAYS_AS_NUMBERS = "%Y%m%d"
 GRIB = (".grib", ".grb", ".grib2", ".grb2")
 ZARR = (".zarr",)
+#: TELEMAC.
+SELAFIN = (".slf", ".srf")
 JSON = (".json", ".geojson")
 TABLES = {
     ".csv": flow_text.read_columns,
@@ -42,7 +45,7 @@ TABLES = {
 #: Suffixes that files of other content have as well; folders are not searched for them.
 COMMON = (".txt",)
 #: Suffixes of files that are opened by xarray.
-SUFFIXES = (*NETCDF, *GRIB, *ZARR, *JSON, *TABLES)
+SUFFIXES = (*NETCDF, *GRIB, *ZARR, *SELAFIN, *JSON, *TABLES)
 
 
 class Datasets(list["xr.Dataset"]):
@@ -330,6 +333,8 @@ def open_files(path: Path) -> Datasets:
             return Datasets([tables.read_winds(path)])
         if suffix in TABLES:
             return Datasets([TABLES[suffix](path)])
+        if suffix in SELAFIN:
+            return Datasets([_selafin(path)])
         if suffix in GRIB:
             parts = import_cfgrib().open_datasets(str(path), backend_kwargs={"indexpath": ""})
             return Datasets(parts, _closers(parts))
@@ -354,6 +359,15 @@ def open_files(path: Path) -> Datasets:
             raise FieldError(f"the group {group!r} does not exist; expected {groups}")
         part = of_tree(tree[group] if group else tree, path)
         return Datasets([part], _closers([ds, *tree.subtree]))
+
+
+def _selafin(path: Path) -> xr.Dataset:
+    """Read a file of TELEMAC as a whole, as its reader cannot open it again for each step."""
+    import_package("xarray-selafin", "a SELAFIN file of TELEMAC")
+    check_memory(path.stat().st_size, "the file")
+    with import_extra("xarray", "xarray").open_dataset(path, engine="selafin") as ds:
+        whole: xr.Dataset = ds.load()
+    return whole
 
 
 def _closers(parts: Iterable[Any]) -> list[Callable[[], None]]:

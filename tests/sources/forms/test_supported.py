@@ -5,13 +5,14 @@ from __future__ import annotations
 from pathlib import Path
 
 import mesh_files
+import model_files
 import pytest
 import text_forms
 from known_flow import check
 from supported import ROWS, Supported, drawn
 
 pytest.importorskip("pyproj")
-MODULES = (mesh_files, text_forms)
+MODULES = (mesh_files, model_files, text_forms)
 
 
 @pytest.mark.parametrize("row", ROWS, ids=lambda row: row.make.__name__)
@@ -19,7 +20,7 @@ def test_line_of_supported_data_draws_the_flow(
     row: Supported, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     if row.needs:
-        pytest.importorskip(row.needs)
+        pytest.importorskip(row.needs.replace("-", "_"))
     monkeypatch.chdir(tmp_path)
     variables, truth = row.make(tmp_path)
     check(drawn(row.code, variables), truth)
