@@ -2,12 +2,12 @@
   // its share of the light, and lights them next.
   vec3 flowtexColour = (ambientColor + diffuseColor) / max(ambientIntensity + diffuseIntensity, FLOWTEX_LEAST_LIGHTNESS);
 #ifdef FLOWTEX_DEFERRED
-  vec4 flowtexSum = texelFetch(u_sums, ivec2(gl_FragCoord.xy) + u_margin, 0);
+  vec4 flowtexShown = texelFetch(u_shown, ivec2(gl_FragCoord.xy) + u_margin, 0);
 #ifdef FLOWTEX_OWN
-  if (u_showLevel)
+  if (!u_showLevel)
+    flowtexShown.rgb = flowtexShade(flowtexColour, flowtexShown.a);
 #endif
-    flowtexColour = flowtexSum.rgb;
-  flowtexColour = flowtexShade(flowtexColour, flowtexSum.a);
+  flowtexColour = flowtexShown.rgb;
 #else
 #ifdef FLOWTEX_TRIANGLES
   flowtexSetCorners(flowtexCornersVSOutput.xyz);

@@ -136,10 +136,10 @@ class FlowLayer:
         self._context = 0  # the time at which VTK made the context of these
         self._retired: list[vtkTextureObject] = []
         self.view = ViewState()
-        #: Whether passes before the frame sum the pixels, and what they have summed.
+        #: Whether passes before the frame sum the pixels, and what they have drawn.
         self.deferred = False
-        self.sums: vtkTextureObject | None = None
-        self.sums_margin = 0  #: Pixels of these before the first of the frame.
+        self.shown: vtkTextureObject | None = None
+        self.shown_margin = 0  #: Pixels of it before the first of the frame.
         self._is_blank = False
         self._observed = observe_draws(self._mapper, self.before_draw)
 
@@ -229,7 +229,7 @@ class FlowLayer:
 
     def _write_text(self, renderer: Any) -> None:
         self.deferred = is_deferred(self.actor, renderer, self.textures)
-        # An actor that shows what passes have summed has one text, however they sum.
+        # An actor that shows what passes have drawn has one text, however they sum.
         variant = self.variant & SHOWN if self.deferred else self.variant
         if variant == self._variant:
             return
@@ -282,19 +282,20 @@ class FlowLayer:
         if not self.view.between and program.IsUniformUsed("u_slicesNext"):
             # At a step there is no next one, and the sampler needs a texture of its kind.
             program.SetUniformi("u_slicesNext", self._gpu["u_slices"].GetTextureUnit())
-        if (sums := self.sums) is not None and program.IsUniformUsed("u_sums"):
-            if sums.GetTextureUnit() < 0:
-                sums.Activate()
-            program.SetUniformi("u_sums", sums.GetTextureUnit())
-            program.SetUniformi("u_margin", self.sums_margin)
+        shown = self.shown
+        if shown is not None and program.IsUniformUsed("u_shown"):
+            if shown.GetTextureUnit() < 0:
+                shown.Activate()
+            program.SetUniformi("u_shown", shown.GetTextureUnit())
+            program.SetUniformi("u_margin", self.shown_margin)
 
     def after_frame(self) -> None:
         """Release the texture units."""
         self._drawn = True
         for texture in self._gpu.values():
             _unbind(texture)
-        if self.sums is not None:
-            _unbind(self.sums)
+        if self.shown is not None:
+            _unbind(self.shown)
 
     def rays(self, matrix: Floats, size: Ints) -> tuple[Floats, Floats, Floats]:
         """Return the corner of the picture, and its change by a pixel to the right and upwards.

@@ -1,9 +1,10 @@
 """One sum for each visible pixel: where on the surface it lies, then the texture there.
 
-Before a renderer draws, two passes do so off the screen. The first draws the triangles of its
+Before a renderer draws, three passes do so off the screen. The first draws the triangles of its
 layers into a texture of places. The second draws a rectangle for each layer, whose pixels look up
-their place and sum noise along their paths. Then the actors are drawn as ever and fetch the sums of
-their pixels, so lighting, clipping, picking and multisampling remain VTK's.
+their place and sum noise along their paths. The third subtracts the local mean of these sums and
+lays them over the colours. Then the actors are drawn as usual and fetch their pixels from the
+result, so VTK remains in charge of lighting, clipping, picking and multisampling.
 """
 
 from __future__ import annotations
@@ -109,8 +110,9 @@ class DeferredPasses:
             for layer in surface:
                 self._parts[layer].sum(buffers, area)
                 layer.after_frame()
-                layer.sums, layer.sums_margin = buffers.sums.texture, area.margin
-            buffers.even.draw(window, buffers.sums, surface[0].even_grain, area)
+                layer.shown = buffers.shown.texture
+                layer.shown_margin = area.margin
+            buffers.even.draw(surface[0], buffers.sums, buffers.shown, area)
         places.Deactivate()
         state.PopFramebufferBindings()
         state.Pop()
@@ -192,6 +194,7 @@ class _Buffers:
         self.context = window.GetContextCreationTime()
         self.places = Target(4, has_depth=True)
         self.sums = Target(4, has_depth=True)  #: Colour and texture of each pixel.
+        self.shown = Target(4)  #: Colour under the texture, and the texture less its local mean.
         self.even = EvenPass()
         self._numbers = Rectangle("depth", frozenset())
 
@@ -200,6 +203,7 @@ class _Buffers:
         size = (width + 2 * margin, height + 2 * margin)
         self.places.fit(window, size)
         self.sums.fit(window, size)
+        self.shown.fit(window, size)
 
     def number(self, window: vtkOpenGLRenderWindow) -> None:
         self._numbers.use(window)
