@@ -241,7 +241,7 @@ class Settings:
         default=1024,
         span=(16, 8192),
     )
-    grain: float = _row("Size of a grain of noise, in pixels.", default=1.5, span=(0.25, 32))
+    grain: float = _row("Size of a grain of noise, in pixels.", default=1.7, span=(0.25, 32))
     fixed_grain: bool = _row(
         "Fix the size of a grain on the surface, so that it grows as the view comes closer.",
         default=False,

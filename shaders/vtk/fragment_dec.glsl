@@ -1,12 +1,9 @@
 //#include common/uniforms.glsl
+//#include common/shade.glsl
 #ifdef FLOWTEX_DEFERRED
 uniform sampler2D u_shown; // colour under the texture, and the texture itself, of each pixel
 uniform int u_margin;      // pixels of it before the first of the frame
-#ifdef FLOWTEX_OWN
-//#include common/shade.glsl
-#endif
 #else
-//#include common/shade.glsl
 in vec2 flowtexCoordinateVSOutput;
 in vec3 flowtexPositionVSOutput;
 #ifdef FLOWTEX_TRIANGLES

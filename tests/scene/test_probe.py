@@ -179,7 +179,7 @@ def test_an_even_wind_has_straight_paths_and_even_samples() -> None:
 
 
 def test_a_rotation_has_round_paths() -> None:
-    view = view_of(turn(), parameter="time", samples=41)
+    view = view_of(turn(), parameter="time", samples=41, grain=1.5)
     got = probe(view, (50.3, 70.8), pixel=0.01)
     centre, radius = got.points[:, :2], np.hypot(*got.field_values.position[:2])
     assert np.hypot(*centre.T) == pytest.approx(np.full(41, radius), rel=5e-3)
