@@ -1,4 +1,4 @@
-"""Flow textures from xarray: ``import flowtex.xarray`` gives every Dataset ``ds.flowtex``.
+"""Flow textures from xarray: ``import flowtex.xarray`` gives datasets and arrays ``.flowtex``.
 
 ::
 
@@ -16,9 +16,11 @@ from typing import TYPE_CHECKING, Any, cast
 import numpy as np
 
 import flowtex
-from flowtex._util.arguments import brief
+from flowtex._util.arguments import brief, checked_array, checked_count
 from flowtex.errors import import_extra
 from flowtex.field import FlowField
+from flowtex.sources.datasets.named_places import placed_on
+from flowtex.sources.opening.tables import as_dataset
 
 try:
     import xarray as xr
@@ -29,6 +31,8 @@ except ModuleNotFoundError:
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.colors import BoundaryNorm
+    from numpy.typing import ArrayLike
 
     from flowtex._util.array_types import Bytes
     from flowtex.host.export import Page
@@ -43,9 +47,12 @@ PANEL_SIZE = 3.0  #: Height of a panel in inches.
 PANEL_ASPECT = 1.6  #: Width of a panel over its height.
 
 
+@xr.register_dataarray_accessor("flowtex")  # type: ignore[no-untyped-call]
 @xr.register_dataset_accessor("flowtex")  # type: ignore[no-untyped-call]
 class FlowtexAccessor:
     """Functions of flowtex for a dataset; each has the arguments of the function of the same name.
+
+    A DataArray with an axis of components, or of complex values u + iv, has them too.
 
     Examples
     --------
@@ -56,8 +63,13 @@ class FlowtexAccessor:
     (120, 160, 3)
     """
 
-    def __init__(self, dataset: xr.Dataset) -> None:
-        self._dataset = dataset
+    def __init__(self, data: xr.Dataset | xr.DataArray) -> None:
+        self._data = data
+
+    @property
+    def _dataset(self) -> xr.Dataset:
+        """The dataset, or that of the components of an array."""
+        return as_dataset(self._data, several=False)
 
     def field(self, *names: str, **options: Any) -> FlowField:
         """Return the field, as :meth:`flowtex.FlowField.from_xarray` does."""
@@ -90,6 +102,8 @@ class FlowtexAccessor:
     def plot(
         self,
         *,
+        x: str | None = None,
+        y: str | None = None,
         u: str | None = None,
         v: str | None = None,
         hue: str | None = None,
@@ -101,6 +115,10 @@ class FlowtexAccessor:
         vmin: float | None = None,
         vmax: float | None = None,
         robust: bool = False,
+        norm: Any = None,
+        levels: int | ArrayLike | None = None,
+        xlim: tuple[float, float] | None = None,
+        ylim: tuple[float, float] | None = None,
         add_colorbar: bool = True,
         cbar_kwargs: Mapping[str, Any] | None = None,
         figsize: tuple[float, float] | None = None,
@@ -113,6 +131,8 @@ class FlowtexAccessor:
 
         Parameters
         ----------
+        x, y
+            Names of the coordinates across and upward; recognised by default.
         u, v
             Names of the components; recognised by default.
         hue
@@ -126,6 +146,12 @@ class FlowtexAccessor:
             projection of longitudes and latitudes is known.
         vmin, vmax, robust
             Range of the colours, the same in all panels.
+        norm
+            Norm from values to colours, as for :func:`flowtex.axes`, in place of these.
+        levels
+            Number of levels of the colours, at round values, or their edges.
+        xlim, ylim
+            Limits of the axes.
         add_colorbar, cbar_kwargs
             Whether to add a colour bar, and arguments of ``figure.colorbar``.
         figsize, size, aspect, subplot_kws
@@ -162,14 +188,18 @@ class FlowtexAccessor:
         options |= {"u": u, "v": v}
         options |= {} if hue is None else {"scalars": hue}
         options |= {"clim": "robust"} if robust else {}
+        if norm is not None:
+            _check_alone(norm, vmin=vmin, vmax=vmax, levels=levels)
+            options["norm"] = norm
+        dataset = placed_on(self._dataset, x, y)
         panels: FacetGrid[xr.Dataset] | None = None
         if row is None and col is None:
             if figsize is None and size is not None:
                 figsize = (size * (aspect or PANEL_ASPECT), size)
-            shown = [(ax or _axes(figsize, subplot_kws or {}), self._dataset)]
+            shown = [(ax or _axes(figsize, subplot_kws or {}), dataset)]
         elif ax is None:
             panels = FacetGrid(
-                self._dataset,
+                dataset,
                 row=row,
                 col=col,
                 col_wrap=col_wrap,
@@ -179,7 +209,7 @@ class FlowtexAccessor:
                 subplot_kws=dict(subplot_kws or {}),
             )
             pairs = zip(panels.axs.flat, panels.name_dicts.flat, strict=True)
-            shown = [(panel, self._dataset.loc[n]) for panel, n in pairs if n is not None]
+            shown = [(panel, dataset.loc[n]) for panel, n in pairs if n is not None]
         else:
             raise flowtex.FieldError(
                 "ax is given, but row and col make their own axes; omit ax, or row and col"
@@ -191,6 +221,10 @@ class FlowtexAccessor:
             for image in images:
                 low, high = ends[:, 0].min(), ends[:, 1].max()
                 image.set_clim(low if vmin is None else vmin, high if vmax is None else vmax)
+                if levels is not None:
+                    image.set_norm(_levels_norm(levels, image))
+        for panel, _ in shown:
+            panel.set(**{k: v for k, v in (("xlim", xlim), ("ylim", ylim)) if v is not None})
         if panels is not None:
             for panel in panels.axs.flat:
                 panel.set_title("")
@@ -210,6 +244,30 @@ class FlowtexAccessor:
     def widget(self, **options: Any) -> FlowWidget:
         """Return a :class:`flowtex.FlowWidget` of the flow."""
         return flowtex.FlowWidget(self._dataset, **options)
+
+
+def _check_alone(norm: Any, **others: Any) -> None:
+    """Raise a FieldError for an argument that a norm replaces."""
+    for name, value in others.items():
+        if value is not None:
+            raise flowtex.FieldError(
+                f"norm is {brief(norm)}, and {name} is {brief(value)}; expected one of them: give "
+                "the norm its limits, as in PowerNorm(0.5, 0, 10)"
+            )
+
+
+def _levels_norm(levels: Any, image: FlowImage) -> BoundaryNorm:
+    """Return the norm of a number of levels at round values, or of their edges."""
+    from matplotlib.colors import BoundaryNorm
+    from matplotlib.ticker import MaxNLocator
+
+    edges = checked_array("levels", levels, expected="a number of levels, or their edges")
+    if edges.ndim == 0:
+        count = checked_count("levels", levels, expected="a number of levels, or their edges")
+        edges = np.asarray(MaxNLocator(count + 1).tick_values(*image.get_clim()))
+    if edges.ndim != 1 or len(edges) < 2 or not (np.diff(edges) > 0).all():
+        raise flowtex.FieldError(f"levels is {brief(levels)}; expected edges that increase")
+    return BoundaryNorm(edges, image.cmap.N)
 
 
 def _axes(figsize: tuple[float, float] | None, options: Mapping[str, Any]) -> Axes:

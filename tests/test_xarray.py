@@ -11,6 +11,7 @@ import pytest
 pytest.importorskip("xarray")
 pytest.importorskip("cf_xarray")
 
+import xarray as xr
 from earth_data import winds
 
 import flowtex
@@ -114,4 +115,91 @@ def test_facets_have_one_range_of_colours(opengl: Any) -> None:
     limits = {ax.images[0].get_clim() for ax in panels.axs.flat[:3]}
     assert len(limits) == 1 and limits.pop()[1] > 70, "the fastest winds are at 250 hPa"
     panels.fig.canvas.draw()
+    plt.close("all")
+
+
+X, Y = np.meshgrid(np.linspace(-1, 1, 9), np.linspace(-2, 2, 13))
+
+
+def plane() -> xr.Dataset:
+    """A flow on axes without usual names, with positions in two dimensions beside them."""
+    u, v = 1 - Y, 2 * X
+    return xr.Dataset(
+        {"u": (("row", "column"), u), "v": (("row", "column"), v)},
+        {
+            "far": ("column", X[0]),
+            "high": ("row", Y[:, 0]),
+            "px": (("row", "column"), X + 0.5 * Y),
+            "py": (("row", "column"), Y),
+        },
+    )
+
+
+def test_an_array_has_the_calls_of_the_package(opengl: Any) -> None:
+    del opengl
+    import matplotlib.pyplot as plt
+
+    both = np.stack([1 - Y, 2 * X])
+    array = xr.DataArray(both, {"x": X[0], "y": Y[:, 0], "c": ["u", "v"]}, ("c", "y", "x"))
+    picture = array.flowtex.render(size=(60, 40), samples=3)
+    assert np.array_equal(picture, flowtex.render(array, size=(60, 40), samples=3))
+    assert np.array_equal(array.flowtex.field().velocity[0][..., 0], both[0])
+    series = xr.concat([array, 2 * array], xr.Variable("time", [0.0, 1.0]))
+    panels = series.flowtex.plot(col="time", samples=3)
+    speeds = [ax.images[0].flow.speed.max() for ax in panels.axs.flat]
+    assert speeds[1] == pytest.approx(2 * speeds[0])
+    plt.close("all")
+
+
+@pytest.mark.parametrize("order", [("row", "column"), ("column", "row")])
+def test_a_plot_lies_on_the_coordinates_that_are_named(opengl: Any, order: tuple[str, str]) -> None:
+    del opengl
+    import matplotlib.pyplot as plt
+
+    ds = plane().transpose(*order)
+    for x, y, across in (("far", "high", X), ("px", "py", X + 0.5 * Y)):
+        field = ds.flowtex.plot(ax=plt.figure().add_subplot(), x=x, y=y, samples=3).flow
+        place = field.at(across[4, 3], Y[4, 3])
+        assert place is not None
+        np.testing.assert_allclose(place.velocity[:2], [1 - Y[4, 3], 2 * X[4, 3]], atol=1e-9)
+    plt.close("all")
+
+
+def test_a_plot_has_levels_norms_and_limits(opengl: Any) -> None:
+    del opengl
+    import matplotlib.pyplot as plt
+    from matplotlib.colors import BoundaryNorm, PowerNorm
+
+    named = {"x": "far", "y": "high", "samples": 3}
+    image = plane().flowtex.plot(**named, levels=[0, 1, 4], xlim=(-0.5, 1), ylim=(0, 2))
+    assert isinstance(image.norm, BoundaryNorm) and image.norm.boundaries.tolist() == [0, 1, 4]
+    assert image.axes.get_xlim() == (-0.5, 1) and image.axes.get_ylim() == (0, 2)
+    colours = image.make_image(None)[0][..., :3].reshape(-1, 3)
+    assert len(np.unique(colours // 64, axis=0)) < 30
+    even = plane().flowtex.plot(ax=plt.figure().add_subplot(), **named, levels=4).norm.boundaries
+    assert len(even) <= 6 and np.ptp(np.diff(even)) < 1e-9
+    norm = PowerNorm(0.5, 0, 3)
+    image = plane().flowtex.plot(ax=plt.figure().add_subplot(), **named, norm=norm)
+    assert isinstance(image.norm, PowerNorm) and image.get_clim() == (0, 3)
+    plt.close("all")
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        ({"x": "lat", "y": "lon"}, "exchanged; expected x='lon', y='lat'"),
+        ({"x": "far"}, "x is 'far' and y is None; expected the names of both"),
+        ({"x": "fat", "y": "high"}, "x is 'fat', which the data do not have; did you mean"),
+        ({"x": "far", "y": "py"}, "expected two axes, or two coordinates over both"),
+        ({"norm": "symlog", "vmax": 3}, "vmax is 3; expected one of them"),
+        ({"x": "far", "y": "high", "levels": [2, 1]}, "expected edges that increase"),
+    ],
+)
+def test_a_plot_names_invalid_arguments(opengl: Any, options: dict[str, Any], words: str) -> None:
+    del opengl
+    import matplotlib.pyplot as plt
+
+    ds = plane().assign_coords(lat=("row", Y[:, 0]), lon=("column", X[0]))
+    with pytest.raises(FieldError, match=words):
+        ds.flowtex.plot(**options, samples=3)
     plt.close("all")

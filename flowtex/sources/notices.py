@@ -10,6 +10,9 @@ from flowtex import errors
 from flowtex.errors import FieldError, Notice
 from flowtex.field.field_arrays import STEPS, Reading, ReadingStep
 
+#: Entry of a dataset's encoding with a sentence for the record of its reading.
+NOTE = "flowtex_note"
+
 
 class DatasetNotice(Notice):
     """flowtex chose something in a dataset, such as a level.

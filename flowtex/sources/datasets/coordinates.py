@@ -145,11 +145,27 @@ def find_places(
     lines = [_own_line(array, d, datasets) for d in dims]
     if any_axes and lines[0] is not None and lines[1] is not None:
         return _of_lines(lines[1], lines[0])
+    _check_two_of_space(array, dims)
     names = sorted({str(n) for n in array.coords} | {str(n) for ds in datasets for n in ds.coords})
     raise FieldError(
         f"{array.name!r} with the dimensions {', '.join(dims)} has no positions; the coordinates "
         f"are {', '.join(names) or 'none'}. Open the file that has them together with this one, "
         f"or add them, as in ds.assign_coords({dims[0]}=..., {dims[1]}=...)"
+    )
+
+
+def _check_two_of_space(array: xr.DataArray, dims: tuple[str, ...]) -> None:
+    """Raise a FieldError for values along time and one axis of space, as of Hovmöller diagrams."""
+    times = [dim for dim in dims if axis_kind(array, dim) == TIME]
+    others = [dim for dim in dims if dim not in times]
+    if len(times) != 1 or len(others) != 1:
+        return
+    time, space = times[0], others[0]
+    raise FieldError(
+        f"{array.name!r} has the axes {' and '.join(dims)}, time and one axis of space; expected "
+        f"two axes of space. To draw the paths d{space}/d{time} = {array.name} of a Hovmöller "
+        f"diagram, pass arrays in units that belong together, and 1 along the time t: "
+        f"flowtex.render({space}, t, {array.name}, np.ones_like({array.name}))"
     )
 
 

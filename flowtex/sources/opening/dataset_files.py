@@ -21,8 +21,8 @@ from flowtex.sources.datasets.axes import TIMES, as_slice, is_dates
 from flowtex.sources.datasets.select import find_pairs
 from flowtex.sources.inspection.inspect_file import NETCDF, inspect_file
 from flowtex.sources.models.conventions import with_mesh_axes
-from flowtex.sources.notices import Record
-from flowtex.sources.opening import flow_text, tables
+from flowtex.sources.notices import NOTE, Record
+from flowtex.sources.opening import component_axes, flow_text, tables
 from flowtex.sources.reader_errors import check_memory
 
 if TYPE_CHECKING:
@@ -74,15 +74,15 @@ def as_datasets(data: Any, record: Record | None = None) -> Datasets:
     result = []
     for ds in data if isinstance(data, (list, tuple)) else [data]:
         several = isinstance(data, (list, tuple)) and len(data) > 1
-        note = getattr(ds, "encoding", {}).get(flow_text.NOTE)
-        if note is not None:
-            record("select", note, notable=True)
         part = (
             of_tree(ds)
             if isinstance(ds, xarray.DataTree)
             else tables.as_dataset(ds, several=several)
         )
-        result.append(tables.split_components(_decoded(part)))
+        note = part.encoding.get(NOTE)
+        if note:
+            record("select", note, notable=True)
+        result.append(component_axes.split_components(_decoded(part)))
     groups: dict[frozenset[Any], list[xr.Dataset]] = {}
     for ds in result:
         groups.setdefault(frozenset(ds.data_vars), []).append(ds)

@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from flowtex.errors import FieldError, import_extra
+from flowtex.sources.notices import NOTE
 from flowtex.sources.opening import tables
 from flowtex.sources.reader_errors import check_memory
 
@@ -48,8 +49,6 @@ FLAG = "flag"
 BAD_FLAGS = {FLAG: (1,), "flags": (1,), "mask": (1,), "Vector type": (0,)}
 #: Columns of OpenPIV.
 OPENPIV = ("x", "y", "u", "v", "flags", "mask")
-#: Entry of a dataset's encoding with a sentence for the record of its reading.
-NOTE = "flowtex_note"
 
 
 @dataclass(frozen=True)

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 import xarray as xr
 
 from flowtex import FlowField
 from flowtex.errors import FieldError
-from flowtex.sources.opening.tables import split_components
+from flowtex.sources.notices import DatasetNotice
+from flowtex.sources.opening.component_axes import split_components
 
 pytestmark = pytest.mark.filterwarnings("ignore::flowtex.sources.notices.DatasetNotice")
 
@@ -101,3 +104,67 @@ def test_scalar_raises() -> None:
 def test_arrays_of_components_are_a_pair() -> None:
     ds = flow("xy", ["u", "v"]).to_dataset("vdims")
     check(FlowField.from_xarray([ds["u"], ds["v"]]), 0, 1)
+
+
+# --- one array, by labels, names and sizes --------------------------------------------------------
+
+LINES = {"x": np.linspace(-1, 1, 8), "y": np.linspace(-2, 2, 11)}
+ACROSS, UPWARD = np.meshgrid(LINES["x"], LINES["y"])
+#: A flow that tells its place and its components apart at every node.
+PARTS = np.stack([1 - UPWARD + 0.3 * ACROSS, 2 * ACROSS + 0.1 * UPWARD, 0 * ACROSS])
+
+
+def check_analytic(field: FlowField) -> None:
+    x, y, _ = np.moveaxis(field.points, -1, 0)
+    expected = np.stack([1 - y + 0.3 * x, 2 * x + 0.1 * y], axis=-1)
+    np.testing.assert_allclose(field.velocity[0][..., :2], expected, atol=1e-12)
+
+
+@pytest.mark.parametrize(
+    "labels",
+    ["x y", "u v", "U V", "E N", "east north", "vx vy", "Bx By", "u_x u_y", "x y z", "E N U"],
+)
+def test_labels_of_an_axis_of_any_name_are_components(labels: str) -> None:
+    names = labels.split()
+    order = np.arange(len(names))[::-1]
+    values = PARTS[: len(names)][order]
+    coordinates = {**LINES, "which": [names[number] for number in order]}
+    array = xr.DataArray(values, coordinates, ("which", "y", "x"), name="flow")
+    check_analytic(FlowField.from_xarray(array))
+    check_analytic(FlowField.from_xarray(array.transpose("y", "which", "x")))
+
+
+@pytest.mark.parametrize("labels", [None, [0, 1], ["first", "second"]])
+def test_the_size_of_an_axis_tells_its_components(labels: list[Any] | None) -> None:
+    coordinates = LINES if labels is None else {**LINES, "which": labels}
+    array = xr.DataArray(PARTS[:2], coordinates, ("which", "y", "x"))
+    with pytest.warns(DatasetNotice, match="the components lie along which, by its size"):
+        field = FlowField.from_xarray(array)
+    check_analytic(field)
+    with pytest.warns(DatasetNotice, match="dim_0, by its size.*nodes are counted from 0"):
+        field = FlowField.from_xarray(xr.DataArray(PARTS[:2]))
+    assert field.points[4, 3].tolist() == [3, 4, 0]
+    assert np.array_equal(field.velocity[0][..., 1], PARTS[1])
+
+
+def test_two_axes_that_may_have_components_are_named() -> None:
+    array = xr.DataArray(PARTS[None, :2].repeat(3, axis=0), LINES, ("a", "b", "y", "x"))
+    words = r"'a': 3, 'b': 2, 'y': 11, 'x': 8}, .* along a or b; .* da.rename\({'a': 'component'}\)"
+    with pytest.raises(FieldError, match=words):
+        FlowField.from_xarray(array)
+
+
+def test_complex_values_are_two_components() -> None:
+    array = xr.DataArray(PARTS[0] + 1j * PARTS[1], LINES, ("y", "x"), attrs={"units": "m/s"})
+    field = FlowField.from_xarray(array)
+    check_analytic(field)
+    assert field.velocity_unit == "m/s"
+
+
+def test_time_and_one_axis_of_space_are_no_surface() -> None:
+    days = np.datetime64("2000-01-01") + np.arange(5) * np.timedelta64(1, "D")
+    values = np.ones((5, 8)), {"units": "m/s"}
+    arrays = {name: (("time", "x"), *values) for name in "uv"}
+    ds = xr.Dataset(arrays, {"time": days, "x": LINES["x"]})
+    with pytest.raises(FieldError, match=r"axes time and x, .* flowtex.render\(x, t, u, np.ones"):
+        FlowField.from_xarray(ds)
