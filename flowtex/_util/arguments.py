@@ -35,7 +35,9 @@ LONGEST_SHOWN = 100  #: Longest value that is written in a message, in letters.
 def brief(value: Any) -> str:
     """Return a value as a message writes it: on one line, and cut where it is long."""
     text = " ".join(repr(value).split())
-    return text if len(text) <= LONGEST_SHOWN else f"{text[: LONGEST_SHOWN - 3]}..."
+    if len(text) <= LONGEST_SHOWN:
+        return text
+    return f"{text[: LONGEST_SHOWN - 3]}..."
 
 
 def is_number(value: Any) -> bool:
@@ -138,9 +140,12 @@ def closest(name: str, names: Sequence[str]) -> list[str]:
 
 def near_names(name: str, known: Iterable[str], usual: Iterable[str] = ()) -> str:
     """Return known names that resemble a text, or a list of them; of many the ``usual`` ones."""
-    names, examples = tuple(known), ", ".join(usual)
+    names = tuple(known)
+    examples = ", ".join(usual)
     if close := closest(name, names):
         return f"did you mean {' or '.join(map(repr, close))}?"
     if examples:
         return f"expected one of {len(names)} names, such as {examples}"
-    return f"expected one of: {', '.join(names)}" if names else "expected none: there are no names"
+    if names:
+        return f"expected one of: {', '.join(names)}"
+    return "expected none: there are no names"

@@ -23,11 +23,18 @@ def even_runs(numbers: Indices) -> Iterator[slice]:
     first = 0
     while first < len(numbers):
         steps = np.diff(numbers[first:])
-        step = int(steps[0]) if len(steps) else 1
+        if len(steps):
+            step = int(steps[0])
+        else:
+            step = 1
         changes = np.flatnonzero(steps != step)
-        count = int(changes[0]) if len(changes) else len(steps)
+        if len(changes):
+            count = int(changes[0])
+        else:
+            count = len(steps)
         if step < 1 and count < 2:
-            step, count = 1, 0
+            step = 1
+            count = 0
         stop = int(numbers[first + count]) + step
         yield slice(int(numbers[first]), stop if stop >= 0 else None, step)
         first += count + 1

@@ -60,7 +60,10 @@ def rgb(colour: Any) -> tuple[float, float, float]:
         # A text such as "0.5" is a grey to matplotlib, and no colour to PyVista.
         if is_color_like(colour) and not colour.replace(".", "", 1).isdecimal():
             return to_rgb(colour)
-    shares = np.asarray(colour) if isinstance(colour, tuple) else np.empty(0)
+    if isinstance(colour, tuple):
+        shares = np.asarray(colour)
+    else:
+        shares = np.empty(0)
     if shares.shape == (3,) and shares.dtype == float and ((shares >= 0) & (shares <= 1)).all():
         red, green, blue = np.rint(shares * 255) / 255  # as PyVista rounds them
         return float(red), float(green), float(blue)
@@ -87,7 +90,10 @@ def colour_table(cmap: Any | None, count: int | None = None, *, flip: bool = Fal
     ``cmap`` is a name, a matplotlib or PyVista colour map, or an array (N, 3 or 4), uint8 or from 0
     to 1. Anything else raises a FieldError, which suggests similar names.
     """
-    values = cmap if isinstance(cmap, np.ndarray) else getattr(cmap, "values", None)
+    if isinstance(cmap, np.ndarray):
+        values = cmap
+    else:
+        values = getattr(cmap, "values", None)
     if isinstance(values, np.ndarray):  # also that of a LookupTable of PyVista's
         table = _resampled(np.asarray(values), count or ENTRIES)
     else:
@@ -104,14 +110,19 @@ def colour_map(cmap: Any | None, count: int | None = None, *, flip: bool = False
     colours = _known(DEFAULT_CMAP if cmap is None else cmap)
     if not isinstance(colours, Colormap):
         colours = ListedColormap(colour_table(cmap)[:, :3] / 255)
-    colours = colours if count is None else colours.resampled(count)
-    return colours.reversed() if flip else colours
+    if count is not None:
+        colours = colours.resampled(count)
+    if flip:
+        return colours.reversed()
+    return colours
 
 
 def _known(name: Any) -> Any:
     from matplotlib import colormaps
 
-    return colormaps[name] if isinstance(name, str) and name in colormaps else name
+    if isinstance(name, str) and name in colormaps:
+        return colormaps[name]
+    return name
 
 
 def _named_table(name: Any, count: int) -> Bytes:
@@ -126,7 +137,10 @@ def _named_table(name: Any, count: int) -> Bytes:
 
         return _resampled(np.asarray(pv.LookupTable(name, n_values=count).values), count)
     except (TypeError, ValueError, ModuleNotFoundError) as error:
-        hint = near_names(name, colormaps, CMAPS) if isinstance(name, str) else "expected a name"
+        if isinstance(name, str):
+            hint = near_names(name, colormaps, CMAPS)
+        else:
+            hint = "expected a name"
         raise FieldError(f"the colour map {name!r} does not exist; {hint}") from error
 
 
@@ -141,7 +155,10 @@ def is_diverging(cmap: Any) -> bool:
 
 def rounded_ends(low: float, high: float, *, log_scale: bool) -> tuple[float, float]:
     """Return the ends of a legend: one that is 0 up to rounding is 0."""
-    least = 0.0 if log_scale else ZERO_SHARE * max(abs(low), abs(high))
+    if log_scale:
+        least = 0.0
+    else:
+        least = ZERO_SHARE * max(abs(low), abs(high))
     return (low if abs(low) >= least else 0.0), (high if abs(high) >= least else 0.0)
 
 
@@ -177,14 +194,18 @@ class ColourScale:
         """Return the places of values on a bar, from 0 to 1; NaN stays."""
         if self.edges is not None:
             return np.asarray(np.interp(values, self.edges, np.linspace(0, 1, len(self.edges))))
-        scaled = np.log if self.log_scale else np.asarray
+        if self.log_scale:
+            scaled = np.log
+        else:
+            scaled = np.asarray
         low, high = scaled([self.low, self.high])
         numbers = scaled(np.maximum(np.asarray(values, dtype=float), self.low))
         return np.asarray(np.clip((numbers - low) / ((high - low) or 1.0), 0, 1))
 
     def colours(self, values: Any) -> Floats:
         """Return the colours of values, (..., 3), from 0 to 1."""
-        numbers, count = np.asarray(values, dtype=float), len(self.table)
+        numbers = np.asarray(values, dtype=float)
+        count = len(self.table)
         with np.errstate(invalid="ignore"):
             if self.edges is None:
                 entry = np.nan_to_num(self.places(numbers) * count).clip(0, count - 1).astype(int)
@@ -231,7 +252,8 @@ class ColourScale:
         from matplotlib.cm import ScalarMappable
         from matplotlib.figure import Figure
 
-        bar, axis = Figure(BAR_SIZE), "horizontal"
+        bar = Figure(BAR_SIZE)
+        axis = "horizontal"
         shown = bar.colorbar(ScalarMappable(self.norm), bar.add_subplot(), orientation=axis)
         values = np.asarray(shown.get_ticks(), dtype=float)
         values = values[(values >= self.low) & (values <= self.high)]
@@ -239,7 +261,8 @@ class ColourScale:
         for value, place in zip(values.tolist(), self.places(values), strict=True):
             if not kept or place - self.places(kept[-1]) >= TICK_GAP:
                 kept.append(value)
-        kept = kept if len(kept) > 1 else [self.low, self.high]
+        if not (len(kept) > 1):
+            kept = [self.low, self.high]
         return tuple(zip(kept, self.places(kept).tolist(), distinct_texts(kept), strict=True))
 
 
@@ -297,7 +320,8 @@ def norm_scale(norm: Any, cmap: Any, **beyond: Any) -> ColourScale:
     ``beyond`` are ``below``, ``above`` and ``nan`` of :class:`ColourScale`; by default they are
     those of matplotlib.
     """
-    low, high = float(norm.vmin), float(norm.vmax)
+    low = float(norm.vmin)
+    high = float(norm.vmax)
 
     def places(values: Floats) -> Floats:
         found = norm(values)
@@ -319,11 +343,13 @@ def norm_scale(norm: Any, cmap: Any, **beyond: Any) -> ColourScale:
         edges = np.interp(numbers, np.arange(len(boundaries)), boundaries)
     else:
         shares = np.linspace(0, 1, NORM_ENTRIES + 1)
-        lower, edges = np.full(len(shares), low), np.full(len(shares), high)
+        lower = np.full(len(shares), low)
+        edges = np.full(len(shares), high)
         for _ in range(BISECTIONS):
             middle = lower + (edges - lower) / 2
             reached = places(middle) >= shares
-            lower, edges = np.where(reached, lower, middle), np.where(reached, middle, edges)
+            lower = np.where(reached, lower, middle)
+            edges = np.where(reached, middle, edges)
         edges[0], edges[-1] = low, high
     table = (255 * np.asarray(cmap(norm((edges[:-1] + edges[1:]) / 2)))).astype(np.uint8)
     outside = np.ma.filled(norm(np.array([2 * low - high, 2 * high - low])), -1)

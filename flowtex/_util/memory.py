@@ -38,15 +38,19 @@ def _groups(root: Path) -> Iterator[int]:
     for line in _text(root / "proc/self/cgroup").splitlines():
         _, controllers, path = line.split(":", 2)
         if not controllers:
-            top, limit, used = root / "sys/fs/cgroup", "memory.max", "memory.current"
+            top = root / "sys/fs/cgroup"
+            limit = "memory.max"
+            used = "memory.current"
         elif "memory" in controllers.split(","):
-            top, limit = root / "sys/fs/cgroup/memory", "memory.limit_in_bytes"
+            top = root / "sys/fs/cgroup/memory"
+            limit = "memory.limit_in_bytes"
             used = "memory.usage_in_bytes"
         else:
             continue
         group = top / path.strip("/")
         for folder in (group, *group.parents):
-            most, now = _text(folder / limit), _text(folder / used)
+            most = _text(folder / limit)
+            now = _text(folder / used)
             if most.isdecimal() and now.isdecimal():
                 # The cache of files is given back when memory is short.
                 pages = _table(folder / "memory.stat")

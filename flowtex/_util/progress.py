@@ -148,7 +148,8 @@ def waiting(text: str) -> Iterator[Callable[[], None]]:
 
 def track(items: Iterable[T], total: int, text: str, *, show: bool = True) -> Iterator[T]:
     """Yield the items, with a progress bar once they have taken a second."""
-    show, start = show and has_threads(), time.monotonic()
+    show = show and has_threads()
+    start = time.monotonic()
     bar = task = None
     try:
         for count, item in enumerate(items):

@@ -56,7 +56,8 @@ class TemporaryFolder:
     def __init__(self) -> None:
         remove_stale_folders()
         new = Path(tempfile.mkdtemp(prefix="flowtex-new-"))
-        self.path, descriptor = new.with_name(f"flowtex-{secrets.token_hex(4)}.tmp"), -1
+        self.path = new.with_name(f"flowtex-{secrets.token_hex(4)}.tmp")
+        descriptor = -1
         if fcntl is not None:
             descriptor = os.open(new, os.O_RDONLY)
             with suppress(OSError):  # a file system without locks, where nothing is taken for stale

@@ -113,9 +113,11 @@ class FlowApp:
         library = Library.of(flow, **{name: options.pop(name, None) for name in FIELD_ARGUMENTS})
         name, choice = first_choice(library, options)
         options = {k: v for k, v in options.items() if k not in CHOICE_ARGUMENTS}
-        field, camera = library.field(name, choice), options.pop("camera", None)
+        field = library.field(name, choice)
+        camera = options.pop("camera", None)
         self.area = FlowArea(field, server=self.server, state=self.state, **options)
-        self.viewport, self.stream = self.area.viewport, self.area.stream
+        self.viewport = self.area.viewport
+        self.stream = self.area.stream
         if camera is not None:
             self.viewport.camera = ViewOptions(camera=camera).first_camera(field.surface)
         self.context = Context(self.state, self.area, library.branch())
@@ -180,14 +182,17 @@ class Viewpoint(Controller):
 
     def __init__(self, context: Context) -> None:
         super().__init__(context)
-        self._first_look, self._first_camera = self.viewport.look, self.viewport.chosen_camera
+        self._first_look = self.viewport.look
+        self._first_camera = self.viewport.chosen_camera
         self.state.set(views=self.views)
         context.field_changed.connect(lambda: self.state.set(views=self.views))
 
     @property
     def views(self) -> list[str]:
         """Names of the directions of view; none for a flat surface."""
-        return [] if self.viewport.flat else list(VIEWS)
+        if self.viewport.flat:
+            return []
+        return list(VIEWS)
 
     def look_from(self, name: object) -> None:
         """Look at the whole of a curved surface from a side."""
@@ -204,12 +209,16 @@ class Viewpoint(Controller):
 
     def describe(self) -> State:
         """Return the camera, and the time where it makes a difference."""
-        time = {} if self.viewport.field.steady else {"time": self.area.player.time}
+        if self.viewport.field.steady:
+            time = {}
+        else:
+            time = {"time": self.area.player.time}
         return {"camera": self.viewport.camera.to_dict(), "clock": self.viewport.clock, **time}
 
     def restore(self, saved: State) -> None:
         """Stop at a saved time, and look from a saved camera."""
-        field, player = self.viewport.field, self.area.player
+        field = self.viewport.field
+        player = self.area.player
         player.playing = False
         self.viewport.clock = float(saved.get("clock", 0.0))
         if not field.steady:
@@ -223,7 +232,8 @@ def first_choice(library: Library, options: Mapping[str, Any]) -> tuple[str, Cho
     partial_choice = Choice(
         *("" if (value := options.get(key)) is None else str(value) for key in CHOICE_ARGUMENTS)
     )
-    names, errors = library.names, list[Exception]()
+    names = library.names
+    errors = list[Exception]()
     for name in names:
         try:
             choice = library.complete(name, partial_choice)
@@ -327,7 +337,9 @@ def app_maker(field: Any, folder: str | Path | None, options: dict[str, Any]) ->
 
 def build_page(app: FlowApp) -> Any:
     """Build the page; return trame's layout, whose ``html`` is the text of the page."""
-    state, data, sharing = app.state, app.data, app.sharing
+    state = app.state
+    data = app.data
+    sharing = app.sharing
     actions = {
         "list_files": data.list_files,
         "reload": data.reload,

@@ -95,8 +95,12 @@ def main(arguments: Sequence[str] | None = None) -> int:
         if debug or not (is_of_system or isinstance(error, (CycloptsError, FieldError))):
             raise
         complain(error)
-        return 1 if is_of_system else 2
-    return result if isinstance(result, int) else 0
+        if is_of_system:
+            return 1
+        return 2
+    if isinstance(result, int):
+        return result
+    return 0
 
 
 def _run(words: Sequence[str]) -> Any:
@@ -151,7 +155,8 @@ def serve_processes(page: ServeFlags | None) -> bool:
     from flowtex.app.server.sessions.process import process_opener
     from flowtex.app.server.site import serve_sessions
 
-    page, secret = page or ServeFlags(), new_secret()
+    page = page or ServeFlags()
+    secret = new_secret()
     report = asdict(diagnostics.require_opengl())
     request = {"words": list(running_words.get()), "secret": secret, "opengl": report}
     first: dict[str, str] = {}

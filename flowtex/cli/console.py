@@ -68,7 +68,10 @@ def announcer(description: str, host: str, end_waiting: Callable[[], None]) -> A
 
 def describe(field: FlowField) -> str:
     """Return name and size of a field as text."""
-    times = "" if field.steady else f", {len(field.times)} times"
+    if field.steady:
+        times = ""
+    else:
+        times = f", {len(field.times)} times"
     return f"{field.name or 'flow'}, {field.short_size}{times}"
 
 
@@ -76,7 +79,11 @@ def load_field(files: Sequence[Path], choice: Mapping[str, Any]) -> FlowField:
     """Return the flow of a file, or of several that belong together."""
     if not files:
         raise UsageError("no file is given; name one")
-    options, mesh = dict(choice), files[0] if len(files) == 1 else files
+    options = dict(choice)
+    if len(files) == 1:
+        mesh = files[0]
+    else:
+        mesh = files
     time = options.pop("time", None)
     with waiting(f"Reading {files[0].name}"):
         return read_field(mesh, FieldOptions(**options), time)
@@ -90,7 +97,10 @@ def check_picture_file(output: Path) -> None:
     suffixes = {suffix for suffix, kind in Image.EXTENSION.items() if kind in Image.SAVE}
     if output.suffix.lower() not in suffixes:
         suffix = output.suffix
-        fault = f"{suffix!r} is not a picture format" if suffix else "the file name has no suffix"
+        if suffix:
+            fault = f"{suffix!r} is not a picture format"
+        else:
+            fault = "the file name has no suffix"
         raise UsageError(f"{output}: {fault}; expected .png, .jpg, .webp or .tiff")
     checked_target(output)
 

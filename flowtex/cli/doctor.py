@@ -74,7 +74,10 @@ def _opengl() -> Check:
     report = opengl_report()
     if not report.usable:
         return Check("OpenGL", "fail", report.failure, report.remedy)
-    kind = "the processor draws" if report.software else "a graphics card draws"
+    if report.software:
+        kind = "the processor draws"
+    else:
+        kind = "a graphics card draws"
     return Check(
         "OpenGL",
         "ok",

@@ -35,14 +35,19 @@ def info(*files: FILE, flow: Annotated[FieldFlags | None, FLAT] = None) -> int:
 
     if not files:
         raise UsageError("no input file; usage: flowtex info FILE")
-    options, name, problem, tables = arguments(flow), str(files[0]), "", list[Table]()
+    options = arguments(flow)
+    name = str(files[0])
+    problem = ""
+    tables = list[Table]()
     has_reading = False
     if len(files) == 1 and has_parts(files[0]):
-        name = place_text(files[0]) if is_remote(files[0]) else name
+        if is_remote(files[0]):
+            name = place_text(files[0])
         tables = [_store_table(files[0])] if is_store(files[0]) else []
     elif paths := dataset_paths(files):
         name += f" and {len(files) - 1} more" if len(files) > 1 else ""
-        has_reading, tables = True, [_recognised_table(paths)]
+        has_reading = True
+        tables = [_recognised_table(paths)]
     else:
         file = files[0] if len(files) == 1 else one_path(files)
         summary = describe(file, options.get("block"))
@@ -71,8 +76,11 @@ def _table(*titles: str, right: tuple[str, ...] = ()) -> Table:
 
 def _pairs(rows: Mapping[str, str], title: str = "") -> Table:
     table = _table("", "")
-    table.title, table.title_justify, table.title_style = title or None, "left", "bold"
-    table.show_header, table.columns[0].style = False, "dim"
+    table.title = title or None
+    table.title_justify = "left"
+    table.title_style = "bold"
+    table.show_header = False
+    table.columns[0].style = "dim"
     for label, text in rows.items():
         if text:
             table.add_row(label, text)
@@ -105,13 +113,21 @@ def _recognised_table(paths: list[Path]) -> Table:
 
 
 def _file_table(summary: FileSummary) -> Table:
-    size, bounds, times = summary.size.replace(" x ", " × "), summary.bounds, summary.times
-    middle = sum(bounds[2]) / 2 if bounds else 0.0
+    size = summary.size.replace(" x ", " × ")
+    bounds = summary.bounds
+    times = summary.times
+    if bounds:
+        middle = sum(bounds[2]) / 2
+    else:
+        middle = 0.0
     ends = [
         f"{axis} {low:.4g} to {high:.4g}" for axis, (low, high) in zip("xyz", bounds, strict=False)
     ]
     listed = ", ".join(f"{time:g}" for time in times)
-    span = f"{times[0]:g} to {times[-1]:g}" if len(times) > MOST_TIMES else listed
+    if len(times) > MOST_TIMES:
+        span = f"{times[0]:g} to {times[-1]:g}"
+    else:
+        span = listed
     return _pairs(
         {
             "grid": f"{summary.grid}{f', {size}' if size else ''}",
@@ -128,21 +144,36 @@ def _file_table(summary: FileSummary) -> Table:
 def _block_table(summary: FileSummary) -> Table:
     table = _table("block", "name", "grid", "size")
     for block in summary.blocks:
-        number = "" if block.number is None else str(block.number)
+        if block.number is None:
+            number = ""
+        else:
+            number = str(block.number)
         size = block.size.removesuffix(" nodes").replace(" x ", " × ")
         table.add_row(number, block.name, block.grid, size)
     return table
 
 
 def _array_table(summary: FileSummary) -> Table:
-    moment = f" at t = {summary.times[0]:g}" if len(summary.times) > 1 else ""
+    if len(summary.times) > 1:
+        moment = f" at t = {summary.times[0]:g}"
+    else:
+        moment = ""
     numbers = ("numbers", f"least{moment}", "greatest")
     table = _table("array", "on", *numbers, right=numbers)
     for array in summary.arrays:
-        parts = f" = {', '.join(array.parts)}" if array.parts else ""
-        magnitude = " (magnitude)" if array.components > 1 else ""
+        if array.parts:
+            parts = f" = {', '.join(array.parts)}"
+        else:
+            parts = ""
+        if array.components > 1:
+            magnitude = " (magnitude)"
+        else:
+            magnitude = ""
         is_known = math.isfinite(array.low)
-        span = (f"{array.low:.4g}", f"{array.high:.4g}{magnitude}") if is_known else ("", "")
+        if is_known:
+            span = (f"{array.low:.4g}", f"{array.high:.4g}{magnitude}")
+        else:
+            span = ("", "")
         table.add_row(f"{array.name}{parts}", array.where, str(array.components), *span)
     return table
 
@@ -153,18 +184,18 @@ def _field_table(field: FlowField, *, has_reading: bool = False) -> Table:
     from flowtex.textures.tiles.shared import has_pyramid
     from flowtex.trace.store import changing_share, chosen_lines
 
-    on_grid, (rows, columns) = field.triangles is None, field.shape
+    on_grid = field.triangles is None
+    (rows, columns) = field.shape
     ends = f"{field.times[0]:g} to {field.times[-1]:g} {field.time_unit}".rstrip()
     if field.start is not None:
         ends = expected_times(field.start, field.times)
-    lines = (
-        ""
-        if field.steady
-        else (
+    if field.steady:
+        lines = ""
+    else:
+        lines = (
             f"{chosen_lines(field)} (within a streak, the flow changes by half at "
             f"{changing_share(field):.0%} of the nodes)"
         )
-    )
     closed = [a for a, is_closed in zip("ji", field.periodic, strict=True) if is_closed]
     shape = "curved" if field.surface.frame is None else "flat"
     extent = f"{field.surface.extent:.4g} {field.length_unit}".rstrip()

@@ -49,7 +49,10 @@ def _option_flags(kind: type, group: Group) -> dict[str, Any]:
         if (form := FORMS.get(option.name)) is None:
             continue
         of_python = {"bool": bool, "bool | None": bool, "float": float}.get(str(option.type), str)
-        value: Any = tuple[str, ...] if form.repeated else of_python
+        if form.repeated:
+            value: Any = tuple[str, ...]
+        else:
+            value = of_python
         text = form.words or _in_shell(option.metadata["text"])
         plain = isinstance(option.default, (str, float)) and "default" not in text
         flags[option.name] = Annotated[
@@ -72,11 +75,18 @@ def _in_shell(text: str) -> str:
 
 
 def _setting_flag(row: Setting) -> Any:
-    kind: Any = Literal[row.choices] if row.choices else row.kind
-    span = f" From {row.low:g} to {row.high:g}." if row.low is not None else ""
+    if row.choices:
+        kind: Any = Literal[row.choices]
+    else:
+        kind = row.kind
+    if row.low is not None:
+        span = f" From {row.low:g} to {row.high:g}."
+    else:
+        span = ""
     text = f"{row.text}{span} [default: {row.default}]"
     if row.switch is not None:  # on, off or a number
-        kind, text = str, text.replace("True", "on")
+        kind = str
+        text = text.replace("True", "on")
     return Annotated[kind | None, Parameter(group=SETTINGS, help=text)]
 
 
@@ -202,7 +212,10 @@ def arguments(*groups: object) -> dict[str, Any]:
             try:
                 values[name] = forms[name].read(value)
             except UnreadableError as error:
-                text = " ".join(value) if isinstance(value, tuple) else repr(value)
+                if isinstance(value, tuple):
+                    text = " ".join(value)
+                else:
+                    text = repr(value)
                 raise UsageError(
                     f"--{name.replace('_', '-')} is {text}; expected {error}"
                 ) from error

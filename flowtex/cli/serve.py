@@ -74,7 +74,8 @@ def serve(
     settings: Annotated[SettingFlags | None, FLAT] = None,
 ) -> int:
     """Serve a page that streams a pyramid."""
-    options, server = drawing(look, settings), address or AddressFlags()
+    options = drawing(look, settings)
+    server = address or AddressFlags()
     require_app()
     given = _secret_word(token, token_file)
     from flowtex.pyramid import is_store, open_store
@@ -92,7 +93,8 @@ def serve(
     with waiting(f"Reading {store.name}") as end_waiting:
         served = ServedStore(store)
         field = open_store(store)
-        word, link = given or new_secret(), f"store/{served.run}/"
+        word = given or new_secret()
+        link = f"store/{served.run}/"
         with opened_views(field, **options) as (views, shown):
             page = page_text(views, store=link, title=title, **shown)
         hosts = known_hosts(server.host, server.allow_host)
@@ -112,15 +114,18 @@ def serve(
 
 
 def _secret_word(token: str | None, file: Path | None) -> str | None:
-    word, readable = os.environ.get(TOKEN_VARIABLE), ""
+    word = os.environ.get(TOKEN_VARIABLE)
+    readable = ""
     source = f"{TOKEN_VARIABLE} contains another text"
     if token is not None:
-        word, source = token, f"--token is {token!r}"
+        word = token
+        source = f"--token is {token!r}"
         readable = "--token in the list of processes; use --token-file or FLOWTEX_TOKEN"
     elif file is not None:
         try:
             with file.open(encoding="utf-8", errors="replace") as opened:
-                word, source = opened.read(MOST_TOKEN).strip(), f"{file} contains another text"
+                word = opened.read(MOST_TOKEN).strip()
+                source = f"{file} contains another text"
                 mode = os.fstat(opened.fileno()).st_mode
                 if mode & (stat.S_IRWXG | stat.S_IRWXO) and os.name == "posix":
                     readable = f"{file}; protect it with `chmod 600 {file}`"
@@ -195,11 +200,17 @@ def pyramid(
         )
     start = time.perf_counter()
     with waiting(f"Reading {files[0].name}"):
-        place: Any = files[0] if len(files) == 1 else files
+        if len(files) == 1:
+            place: Any = files[0]
+        else:
+            place = files
         source = source_of(place, **arguments(flow))
     with writing(output):
         built = build(source, output, lines=lines, scheduler=scheduler, memory=memory, fresh=fresh)
-    kept = f", {built.kept:,} kept" if built.kept else ""
+    if built.kept:
+        kept = f", {built.kept:,} kept"
+    else:
+        kept = ""
     rows, columns = source.shape
     seconds = time.perf_counter() - start
     text = f"{columns} × {rows} nodes, {built.depth + 1} levels"
@@ -223,4 +234,6 @@ def _verify(files: Sequence[Path]) -> int:
         complain(DamageError(fault))
     if not faults:
         say((str(files[0]), "bold"), "  is whole")
-    return 1 if faults else 0
+    if faults:
+        return 1
+    return 0

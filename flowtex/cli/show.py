@@ -102,7 +102,9 @@ def show(
 
     Several files, or a folder, are shown on a page with a list of files.
     """
-    choice, options, window = arguments(flow), drawing(look, settings), pixels(size)
+    choice = arguments(flow)
+    options = drawing(look, settings)
+    window = pixels(size)
     from flowtex.rendering import diagnostics
 
     on_page = page is not None or not diagnostics.has_display()

@@ -52,7 +52,8 @@ def render(
 ) -> int:
     """Draw a file as a picture."""
     start = time.perf_counter()
-    choice, options = arguments(flow), _drawing(look, frame or FrameFlags(), settings)
+    choice = arguments(flow)
+    options = _drawing(look, frame or FrameFlags(), settings)
     check_picture_file(output)
     from flowtex.rendering import diagnostics
 
@@ -67,7 +68,10 @@ def render(
 
     write_picture(draw(field, **shown, **options), output)
     share = field.normal_share
-    lost = f", {share:.0%} of the flow is normal to the surface" if share > NOTABLE_LOSS else ""
+    if share > NOTABLE_LOSS:
+        lost = f", {share:.0%} of the flow is normal to the surface"
+    else:
+        lost = ""
     seconds = time.perf_counter() - start
     report(output, f"{describe(field)}{lost}", f"{_size(options)}, {seconds:.1f} s")
     return 0
@@ -103,7 +107,8 @@ def movie(
 ) -> int:
     """Write a file as a movie: a seamless loop, or all times of a time-varying flow."""
     start = time.perf_counter()
-    choice, options = arguments(flow), _drawing(look, frame or FrameFlags(), settings)
+    choice = arguments(flow)
+    options = _drawing(look, frame or FrameFlags(), settings)
     from flowtex.plotting.offscreen.encoders import check_movie, default_fps
     from flowtex.rendering import diagnostics
 
@@ -118,7 +123,10 @@ def movie(
 
     with writing(output):
         result = write_movie(field, output, seconds=seconds, fps=fps, quality=quality, **options)
-    loop = ", a seamless loop" if result.closed else ""
+    if result.closed:
+        loop = ", a seamless loop"
+    else:
+        loop = ""
     figures = (
         f"{_size(options)}, {result.frames} frames in {result.seconds:g} s, "
         f"{result.nbytes / 1e6:.1f} MB, {time.perf_counter() - start:.1f} s"
@@ -153,7 +161,8 @@ def export(
 ) -> int:
     """Write a file as one HTML page that needs neither a server nor a network."""
     start = time.perf_counter()
-    choice, options = arguments(flow), drawing(look, settings)
+    choice = arguments(flow)
+    options = drawing(look, settings)
     field = load_field(files, choice)
     if steps is not None and steps < 1:
         raise UsageError(
@@ -165,7 +174,10 @@ def export(
         options |= {"steps": steps, "title": title, "store": store, "basemap": basemap}
         page = write_page(field, output, **options)
     seconds = time.perf_counter() - start
-    selected = "" if page.steps == len(field.times) else f", {page.steps} of them"
+    if page.steps == len(field.times):
+        selected = ""
+    else:
+        selected = f", {page.steps} of them"
     report(output, f"{describe(field)}{selected}", f"{page.nbytes / 1e6:.2f} MB, {seconds:.1f} s")
     return 0
 
@@ -209,7 +221,8 @@ def formula(
     settings: Annotated[SettingFlags | None, FLAT] = None,
 ) -> int:
     """Draw a flow from a formula: as a page, as a picture, or in a window."""
-    options, frame = drawing(look, settings), frame or FrameFlags()
+    options = drawing(look, settings)
+    frame = frame or FrameFlags()
     is_page = output is not None and output.suffix.lower() in (".html", ".htm")
     if output is not None and not is_page:
         check_picture_file(output)

@@ -153,7 +153,10 @@ def double_gyre_field(
     (41, 21, 41, 3)
     """
     points = gyre_nodes(shape)
-    times = np.linspace(0.0, PERIOD, 41) if time_varying else np.zeros(1)
+    if time_varying:
+        times = np.linspace(0.0, PERIOD, 41)
+    else:
+        times = np.zeros(1)
     return double_gyre_at(times, points, EPSILON if time_varying else 0.0)
 
 
@@ -236,7 +239,8 @@ def delta_wing_field() -> FlowField:
     True
     """
     file = _shipped.load(_shipped.DELTA_WING)
-    points, velocity = file["points"], file["velocity"]
+    points = file["points"]
+    velocity = file["velocity"]
     return FlowField.from_arrays(
         points,
         velocity,
@@ -376,9 +380,13 @@ def _made(field: Callable[..., FlowField], convert: Callable[[FlowField], Any]) 
     def make() -> Any:
         return convert(field())
 
-    times, form, suffix = "the last time", "as from :func:`~flowtex.examples.to_grid`", ""
+    times = "the last time"
+    form = "as from :func:`~flowtex.examples.to_grid`"
+    suffix = ""
     if convert is to_series:
-        times, form, suffix = "all times", "as from :func:`~flowtex.examples.to_series`", "_series"
+        times = "all times"
+        form = "as from :func:`~flowtex.examples.to_series`"
+        suffix = "_series"
     make.__name__ = make.__qualname__ = name = field.__name__.replace("_field", suffix)
     make.__doc__ = _DOC.format(times=times, field=field.__name__, form=form, name=name)
     return make
@@ -439,7 +447,8 @@ def double_gyre_velocity(
 def gyre_vorticity(points: Floats, time: float, epsilon: float = EPSILON) -> Floats:
     """Return exact vorticity (...,) at points (..., 2)."""
     f, slope, bend = _border(points[..., 0], time, epsilon)
-    sine, cosine = np.sin(np.pi * f), np.cos(np.pi * f)
+    sine = np.sin(np.pi * f)
+    cosine = np.cos(np.pi * f)
     across = np.pi * AMPLITUDE * np.sin(np.pi * points[..., 1])
     return np.asarray(across * (cosine * bend - np.pi * sine * (slope**2 + 1.0)))
 
@@ -483,7 +492,8 @@ def airfoil_arrays(shape: tuple[int, int], extent: float) -> tuple[Floats, Float
     s = RADIUS * np.exp(rings + 1j * angles)
     circle = CENTER + s
     z = (circle + 1.0 / circle - 2.0) / CHORD + 1.0
-    turn, swirl = np.exp(1j * INCIDENCE), 1j * CIRCULATION / (2.0 * np.pi)
+    turn = np.exp(1j * INCIDENCE)
+    swirl = 1j * CIRCULATION / (2.0 * np.pi)
     flow = 1.0 / turn - RADIUS**2 * turn / s**2 + swirl / s
     stretch = 1.0 - circle**-2.0
     # Both vanish at the trailing edge: there the quotient is that of their derivatives.

@@ -115,7 +115,8 @@ def ocean() -> xr.Dataset:
     lat = np.radians(ds.latitude)
     turning = 2 * TURNING * np.sin(lat) * DEGREE / GRAVITY
     # The file has attributes of the currents, and the height on land too.
-    u, v = -ds.zos.differentiate("latitude"), ds.zos.differentiate("longitude") / np.cos(lat)
+    u = -ds.zos.differentiate("latitude")
+    v = ds.zos.differentiate("longitude") / np.cos(lat)
     for name, current in (("uo", u), ("vo", v)):
         ds[name] = ds.zos.dims, (current / turning).values, ds[name].attrs
     sea: xr.Dataset = ds[["uo", "vo", "zos"]].where(ds.land == 0)

@@ -175,7 +175,8 @@ def build(
     >>> flowtex.pyramid.build(field, "gyre.zarr", progress=False).made  # all is there
     0
     """
-    lines, parameter = TABLE["lines"].check(lines), TABLE["parameter"].check(parameter)
+    lines = TABLE["lines"].check(lines)
+    parameter = TABLE["parameter"].check(parameter)
     place = place_text(store)
     with plain_faults():
         check_room(place, listed(store_at(place, read_only=False).list_dir))
@@ -187,10 +188,14 @@ def build(
             f"scalar {invalid[0]!r} cannot be stored; expected a name without '/': rename it"
         )
     threads = Threads(memory)
-    workers = threads if scheduler is None else Cluster(scheduler)
+    if scheduler is None:
+        workers = threads
+    else:
+        workers = Cluster(scheduler)
     with plain_faults(), closing(workers), building(place):
         group, about, new = _prepared(place, about, data, fresh=fresh)
-        run, depth = _Run(place, group, about, progress), about["depth"]
+        run = _Run(place, group, about, progress)
+        depth = about["depth"]
         if not new:
             # Corrupt and incomplete objects are removed.
             units = sorted({*_existing_units(run)}, key=repr)
@@ -275,7 +280,10 @@ def _prepared(
     store = store_at(place, read_only=False)
     if fresh:
         _remove(store)
-    stored = zarr.open_group(store, mode="r").attrs["flowtex"] if is_store(place) else None
+    if is_store(place):
+        stored = zarr.open_group(store, mode="r").attrs["flowtex"]
+    else:
+        stored = None
     if stored is None:
         about = {**about, "ranges": source.ranges()}
     else:
@@ -288,7 +296,8 @@ def _prepared(
                 "build with fresh=True, or in another place"
             )
         about = {**stored, "complete": False}
-    metadata, kind = described(about).store, zarr.core.buffer.default_buffer_prototype()
+    metadata = described(about).store
+    kind = zarr.core.buffer.default_buffer_prototype()
     # Those of the group come first: they show that the place is taken.
     for name in sorted(listed(metadata.list_prefix), key=lambda name: name.count("/")):
         document: Any = sync(metadata.get(name, kind))
@@ -345,7 +354,9 @@ class _Run:
         if new:
             self.made += sum(len(t.steps) if isinstance(t, TileTask) else 1 for t in tasks)
         named = [(self.place, self.name, task) for task in tasks]
-        first, failed, in_a_row = None, 0, 0
+        first = None
+        failed = 0
+        in_a_row = 0
         # An error holds its frames: the workers would end whenever these are collected.
         with closing(workers.run(function, named, need, *arguments)) as results:
             for error in track(results, len(tasks), text, show=self.progress):
@@ -354,13 +365,16 @@ class _Run:
                 if error is None:
                     in_a_row = 0
                     continue
-                first, failed, in_a_row = first or error, failed + 1, in_a_row + 1
+                first = first or error
+                failed = failed + 1
+                in_a_row = in_a_row + 1
                 if in_a_row == MOST_FAILURES:
                     break
         if first is not None:
-            count = (
-                f"{failed} of {len(tasks)}" if in_a_row < MOST_FAILURES else f"{failed} in a row"
-            )
+            if in_a_row < MOST_FAILURES:
+                count = f"{failed} of {len(tasks)}"
+            else:
+                count = f"{failed} in a row"
             raise PyramidError(
                 f"{count} shards could not be built in {self.place}; the first error is "
                 f"{type(first).__name__}: {first}. Build again to build the missing ones"
@@ -369,10 +383,12 @@ class _Run:
 
 def _write_finest(run: _Run, source: NodeSource, workers: Threads) -> None:
     """Write level 0; the first step comes first, as it determines the valid nodes."""
-    existing, parts = _existing_parts(run, 0), _missing_parts(run, 0, source.shape)
+    existing = _existing_parts(run, 0)
+    parts = _missing_parts(run, 0, source.shape)
     if parts and run.about.get("levels_done"):
         run.update(levels_done=False)
-    at_start, later = [p for p in parts if p.step == 0], [p for p in parts if p.step > 0]
+    at_start = [p for p in parts if p.step == 0]
+    later = [p for p in parts if p.step > 0]
     run.work(workers, make_finest, at_start, "Level 0", PART_BYTES, source)
     text = "Comparing with the source"
     run.work(workers, compare_finest, existing, text, PART_BYTES, source, new=False)
@@ -402,7 +418,10 @@ def _existing_units(run: _Run) -> Iterator[Part | TileTask]:
                 yield TileTask(TileKey(int(level), row, column), (step,))
         elif {"j", "i"} <= {*axes}:
             for numbers in run.shards(array.path):
-                at = numbers if axes[0] == "time" else (0, *numbers)
+                if axes[0] == "time":
+                    at = numbers
+                else:
+                    at = (0, *numbers)
                 yield Part(int(level), *at[:3])
 
 

@@ -35,9 +35,12 @@ class FinestOfLevels:
         positions: Callable[..., tuple[Floats, Bools]],
         opened: Callable[[], FlowField],
     ) -> None:
-        self._pyramid, self._positions, self._opened = pyramid, positions, opened
+        self._pyramid = pyramid
+        self._positions = positions
+        self._opened = opened
         # Not the field itself, which has this object.
-        self._points, self._known = coarse.points, coarse.has_position
+        self._points = coarse.points
+        self._known = coarse.has_position
 
     def __reduce__(self) -> tuple[Any, ...]:
         return _reopened, (self._opened,)
@@ -75,7 +78,8 @@ class FinestOfLevels:
     def _lines(self, index: Floats, level: int) -> tuple[Indices, Indices]:
         """Return the rows and columns around (j, i), also beyond the ends of a closed axis."""
         lines = []
-        shape, closed = self._pyramid.shape(level), self._pyramid.field.periodic
+        shape = self._pyramid.shape(level)
+        closed = self._pyramid.field.periodic
         for at, count, is_closed in zip(index, shape, closed, strict=True):
             around = np.arange(-LINES_AROUND, LINES_AROUND + 2) + int(at)
             if not is_closed:
@@ -87,7 +91,8 @@ class FinestOfLevels:
 
     def _moved(self, index: Floats, level: int, place: Floats) -> Floats:
         """Return (j, i) of the point of a level that is nearest to a place, near another one."""
-        shape, closed = self._pyramid.shape(level), self._pyramid.field.periodic
+        shape = self._pyramid.shape(level)
+        closed = self._pyramid.field.periodic
         for _ in range(MOST_MOVES):
             lines = self._lines(index, level)
             inside = [
@@ -122,8 +127,12 @@ def _locator(points: Floats, known: Bools | None, projection: Projection | None)
 
 def _renumbered(number: float, count: int, level: int, other: int) -> float:
     """Return the number of a line of a level, of ``count`` at the finest, in another level."""
-    here, there = level_lines(count, level), level_lines(count, other)
-    turns = np.floor(number / (len(here) - 1)) if number > len(here) - 1 or number < 0 else 0.0
+    here = level_lines(count, level)
+    there = level_lines(count, other)
+    if number > len(here) - 1 or number < 0:
+        turns = np.floor(number / (len(here) - 1))
+    else:
+        turns = 0.0
     within = number - turns * (len(here) - 1)
     finest = np.interp(within, np.arange(len(here)), here)
     found = np.interp(finest, there, np.arange(len(there)))
@@ -140,7 +149,8 @@ class FinestOfRegions:
     def near(self, place: Floats) -> FinePart:
         """Return the nodes around a place (3,) in space, on the Earth on the globe."""
         lines = self._source.regions.lines
-        x, y = float(place[0]), float(place[1])
+        x = float(place[0])
+        y = float(place[1])
         period = np.inf
         if lines.projection is not None:
             x, y = map(float, EARTH.lonlat(place))

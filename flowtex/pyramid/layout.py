@@ -180,7 +180,8 @@ def described(about: About, levels: Iterable[int] | None = None) -> Group:
 
 def _create_level(group: Group, level: int, about: About) -> None:
     shape = level_shape((about["nodes"][0], about["nodes"][1]), level)
-    subgroup, steps = group.require_group(str(level)), len(about["times"])
+    subgroup = group.require_group(str(level))
+    steps = len(about["times"])
     nodes = {
         axis: (count, TILE_CELLS, chunks * TILE_CELLS)
         for axis, count, chunks in zip("ji", shape, SHARD_CHUNKS, strict=True)
@@ -308,7 +309,8 @@ def _either(*values: object) -> Check:
 
 
 def _list(check: Check, least: int, most: int | None = None) -> Check:
-    most = least if most is None else most
+    if most is None:
+        most = least
     return lambda v: isinstance(v, list) and least <= len(v) <= most and all(map(check, v))
 
 
@@ -369,7 +371,10 @@ _ABOUT: dict[str, Check] = {
 
 def check_about(about: Any, place: str) -> dict[str, Any]:
     """Return the description of a pyramid; a PyramidError says that it is not as it was written."""
-    version = about.get("format") if isinstance(about, dict) else None
+    if isinstance(about, dict):
+        version = about.get("format")
+    else:
+        version = None
     if version != FORMAT:
         raise PyramidError(
             f"{place} has format {str(version)[:40]!r}; expected {FORMAT!r}. Build it again"
@@ -380,7 +385,10 @@ def check_about(about: Any, place: str) -> dict[str, Any]:
     if not wrong and about.get("uncertainty") and about["uncertainty"] not in about["scalars"]:
         wrong = ["uncertainty"]
     if wrong or about.get("seal") != _seal(about):
-        names = f" ({', '.join(wrong)})" if wrong else ""
+        if wrong:
+            names = f" ({', '.join(wrong)})"
+        else:
+            names = ""
         raise DamageError(f"the metadata of {place} are damaged{names}; build it again")
     result: dict[str, Any] = about
     return result

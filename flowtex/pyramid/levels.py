@@ -182,7 +182,8 @@ class Levels:
 
     def check_tile(self, key: TileKey, step: int) -> None:
         """Raise a DamageError where a part of a tile is missing or corrupt."""
-        label, (level, *at) = f"of tile {tuple(key)} at step {step}", key
+        label = f"of tile {tuple(key)} at step {step}"
+        (level, *at) = key
         parts = self._check_file(FLOW, level, (step, *at), f"{FLOW} {label}")
         if parts:  # something is drawn
             # Browsers compute the speed of a flow that they trace.
@@ -205,7 +206,10 @@ class Levels:
             names = [info["name"] for info in infos[1:]]
         except (ValueError, LookupError, TypeError) as error:
             raise self._error(name, error) from None
-        tile = [level, *at[1:3]] if kind != SURFACE else [level, *at]
+        if kind != SURFACE:
+            tile = [level, *at[1:3]]
+        else:
+            tile = [level, *at]
         prefix = "tile/" + "/".join(map(str, tile)) + "/"
         if owner != self.about["fingerprint"] or not all(n.startswith(prefix) for n in names):
             raise DamageError(f"{name} of {self.place} belongs to another tile; build it again")
@@ -264,7 +268,9 @@ class Levels:
 
         def read(step: int) -> AnyArray:
             (values,) = self._read(self._nodal(level, name, rows, columns, step))
-            return _in_space(values) if name == "velocity" else values
+            if name == "velocity":
+                return _in_space(values)
+            return values
 
         return read
 
@@ -274,7 +280,9 @@ class Levels:
         return values
 
     def _places(self) -> list[str]:
-        return ["x", "y"] if self.about["axes"] else ["points"]
+        if self.about["axes"]:
+            return ["x", "y"]
+        return ["points"]
 
     def _points(self, places: list[AnyArray], rows: Indices, columns: Indices) -> Floats:
         if not self.about["axes"]:
@@ -287,7 +295,10 @@ class Levels:
         self, level: int, name: str, rows: Indices, columns: Indices, step: int | None = None
     ) -> _Piece:
         """Return the piece of an array over the nodes at some rows and columns."""
-        leading = () if step is None else (step,)
+        if step is None:
+            leading = ()
+        else:
+            leading = (step,)
         array = f"{level}/{name}"
         if name in ("x", "y"):
             return _Piece(array, (slice(None),), array)
@@ -296,7 +307,8 @@ class Levels:
     def _read(self, *pieces: _Piece) -> list[AnyArray]:
         """Read parts of arrays, all at once."""
         arrays = [self._array(piece.array) for piece in pieces]
-        need, free = sum(map(_size, pieces, arrays)), available_bytes()
+        need = sum(map(_size, pieces, arrays))
+        free = available_bytes()
         if need > free:
             raise PyramidError(
                 f"{pieces[0].name} of {self.place} takes {need:,} bytes, but only {free:,} bytes "
@@ -316,7 +328,9 @@ class Levels:
             lines = map(as_slice, piece.lines)
             values = np.asarray(await array.oindex.getitem((*piece.selection, *lines)))
             # Fields are float64, as all values computed from them.
-            return values.astype(float) if values.dtype == np.float32 else values
+            if values.dtype == np.float32:
+                return values.astype(float)
+            return values
         except PyramidError:
             raise
         except Exception as error:
@@ -326,12 +340,16 @@ class Levels:
         unread = isinstance(error, MemoryError) or (
             isinstance(error, ReadFault) and not error.missing
         )
-        kind = PyramidError if unread else DamageError
+        if unread:
+            kind = PyramidError
+        else:
+            kind = DamageError
         return kind(f"{name} of {self.place} cannot be read: {_error_text(error)}")
 
 
 def _size(piece: _Piece, array: AsyncArray[ArrayV3Metadata]) -> int:
-    shape, selection = array.shape, piece.selection
+    shape = array.shape
+    selection = piece.selection
     if piece.lines is not None:
         shape = (*map(len, piece.lines), *shape[len(selection) + 2 :])
     else:
@@ -360,7 +378,9 @@ def _error_text(error: Exception) -> str:
     if "checksum" in text:
         return "checksum mismatch: the object is corrupt"
     is_plain = isinstance(error, (ReadFault, PyramidError))
-    return text if is_plain else f"{type(error).__name__}: {text}"[:MOST_LETTERS]
+    if is_plain:
+        return text
+    return f"{type(error).__name__}: {text}"[:MOST_LETTERS]
 
 
 def _wait(reading: Coroutine[Any, Any, T]) -> T:

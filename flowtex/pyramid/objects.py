@@ -47,7 +47,9 @@ class _Kept:
 
     @property
     def nbytes(self) -> int:
-        return len(self.buffer) if self.buffer is not None else 0
+        if self.buffer is not None:
+            return len(self.buffer)
+        return 0
 
 
 class Objects(WrapperStore[Store]):
@@ -165,7 +167,9 @@ def bounded(metadata: ArrayV3Metadata, store: Store, path: str) -> AsyncArray[Ar
             return replace(codec, codecs=tuple(map(limited, codec.codecs)))
         if isinstance(codec, BloscCodec):
             return _BoundedBlosc(**{name: getattr(codec, name) for name in BLOSC_NAMES})
-        return _BoundedGzip(level=codec.level) if isinstance(codec, GzipCodec) else codec
+        if isinstance(codec, GzipCodec):
+            return _BoundedGzip(level=codec.level)
+        return codec
 
     metadata = replace(metadata, codecs=tuple(map(limited, metadata.codecs)))
     return AsyncArray(metadata, StorePath(store, path))

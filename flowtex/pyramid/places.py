@@ -79,7 +79,10 @@ class ReadFault(OSError):
 
 def place_text(place: str | Path) -> str:
     """Return the URL of a store, or the whole path of a local one; secrets are refused."""
-    text = str(checked_path("store", place)) if not isinstance(place, str) else place
+    if not isinstance(place, str):
+        text = str(checked_path("store", place))
+    else:
+        text = place
     if not _URL.match(text):
         checked_path("store", text)
         return str(checked_source(_FILE_URL.sub("/", text)))
@@ -201,7 +204,10 @@ def is_store(place: object) -> bool:
     text = place_text(place)
     try:
         is_url = is_remote(text)
-        document = _remote_document(text) if is_url else (Path(text) / DOCUMENT).read_bytes()
+        if is_url:
+            document = _remote_document(text)
+        else:
+            document = (Path(text) / DOCUMENT).read_bytes()
         return "flowtex" in json.loads(document)["attributes"]
     except (OSError, ValueError, KeyError, TypeError) as error:
         if isinstance(error, PyramidError):
@@ -241,10 +247,14 @@ def is_refused(error: Exception) -> bool:
 
 def fault_words(error: Exception) -> str:
     """Describe a failed request, without the server's text, which may contain secrets."""
-    text, kind = str(error), type(error).__name__
+    text = str(error)
+    kind = type(error).__name__
     status = re.search(r"status code: (\d{3})", text)
     if is_refused(error):
-        code = status[1] if status else "403"
+        if status:
+            code = status[1]
+        else:
+            code = "403"
         return f"is missing or access is denied ({code}); {_CREDENTIALS}"
     if isinstance(error, FileNotFoundError):
         return "is missing"
@@ -281,11 +291,14 @@ def building(place: str) -> Iterator[None]:
     """Mark a store as being built; a PyramidError when another build that runs has marked it."""
     from zarr.core.buffer import default_buffer_prototype
 
-    store, kind = store_at(place, read_only=False), default_buffer_prototype()
-    host, own = platform.node(), uuid.uuid4().hex
+    store = store_at(place, read_only=False)
+    kind = default_buffer_prototype()
+    host = platform.node()
+    own = uuid.uuid4().hex
     for _ in range(2):
         text = json.dumps({"id": own, "host": host, "process": os.getpid()}).encode()
-        mark, holder = kind.buffer.from_bytes(text), dict[str, Any]()
+        mark = kind.buffer.from_bytes(text)
+        holder = dict[str, Any]()
         try:
             sync(store.set_if_not_exists(BUILDING, mark))
         except (OSError, NotImplementedError):  # not all storage has links or conditional writes
@@ -293,7 +306,10 @@ def building(place: str) -> Iterator[None]:
                 sync(store.set(BUILDING, mark))
         with suppress(ValueError, TypeError):
             data = sync(store.get(BUILDING, kind))
-            holder = {} if data is None else {**json.loads(data.to_bytes())}
+            if data is None:
+                holder = {}
+            else:
+                holder = {**json.loads(data.to_bytes())}
         if holder and (holder.get("host") != host or _is_running(holder.get("process"))):
             break
         sync(store.delete(BUILDING))  # it was cut off, or its process has ended

@@ -58,21 +58,31 @@ class FieldSource:
 
     def __init__(self, field: FlowField) -> None:
         if field.triangles is not None or field.sign_free:
-            kind = "on triangles" if field.triangles is not None else "sign-free"
+            if field.triangles is not None:
+                kind = "on triangles"
+            else:
+                kind = "sign-free"
             raise FieldError(
                 f"the field is {kind}; expected one with signs on a structured surface. "
                 f"{ROWS_OF_FOLDS}"
             )
-        self.field, self.shape = field, field.shape
+        self.field = field
+        self.shape = field.shape
         self.scalars = {name: len(steps) for name, steps in field.scalars.items()}
         x, y, z = np.moveaxis(field.points, -1, 0)
         on_map = field.projection is not None and not field.projection.is_globe
         self.late = isinstance(field.velocity, LazySteps)
-        level = on_map if self.late else not np.any(field.velocity[..., 2])
+        if self.late:
+            level = on_map
+        else:
+            level = not np.any(field.velocity[..., 2])
         self.flat = bool((z == z[0, 0]).all()) and level
         self.rectilinear = self.flat and bool((x == x[:1]).all() and (y == y[:, :1]).all())
         has_position = field.has_position
-        self.has_position = None if has_position is None or has_position.all() else has_position
+        if has_position is None or has_position.all():
+            self.has_position = None
+        else:
+            self.has_position = has_position
 
     def points(self, rows: Lines, columns: Lines) -> Floats:
         """Return positions (J, I, 3) of some rows and columns, by slices or numbers."""
@@ -81,10 +91,14 @@ class FieldSource:
     def nodes(self, step: int, rows: slice, columns: slice, valid: Bools | None = None) -> Nodes:
         """Return the data of some nodes at a time step; ``valid`` where it is known already."""
         del valid
-        field, at = self.field, (rows, columns)
+        field = self.field
+        at = (rows, columns)
         scalars = {k: np.asarray(s[step])[at] for k, s in field.scalars.items() if step < len(s)}
         velocity = np.asarray(field.velocity[step])[at]
-        has_position = None if self.has_position is None else self.has_position[at]
+        if self.has_position is None:
+            has_position = None
+        else:
+            has_position = self.has_position[at]
         return Nodes(field.points[at], field.valid[at], velocity, scalars, has_position)
 
     def chosen_lines(self, lines: str) -> str:
@@ -97,7 +111,8 @@ class FieldSource:
 
     def ranges(self) -> dict[str, list[tuple[float, float] | None]]:
         """Return ends of scalars and of the speed, whole and robust."""
-        field, typical = self.field, self.field.typical
+        field = self.field
+        typical = self.field.typical
         values = {k: np.asarray(s)[:, field.valid] for k, s in typical.scalars.items()}
         values.setdefault("speed", drawn_speeds(typical, Pyramid(field).root))
         both = {
@@ -113,11 +128,14 @@ class RegionSource:
     has_position = None
 
     def __init__(self, regions: Regions) -> None:
-        lines, steps = regions.lines, len(regions.words["times"])
-        self.regions, self.shape = regions, lines.shape
+        lines = regions.lines
+        steps = len(regions.words["times"])
+        self.regions = regions
+        self.shape = lines.shape
         self.scalars = dict.fromkeys(regions.names, steps)
         self.flat = lines.projection is None or not lines.projection.is_globe
-        self.rectilinear, self.late = self.flat, steps > 1
+        self.rectilinear = self.flat
+        self.late = steps > 1
         self.field = FlowField(
             points=np.zeros((1, 1, 3)),
             velocity=np.zeros((steps, 1, 1, 3)),
@@ -185,15 +203,20 @@ NodeSource: TypeAlias = FieldSource | RegionSource  #: Sources of a pyramid.
 
 def periods_of(source: NodeSource) -> tuple[Floats, Floats]:
     """Return vectors from the first line of an axis to the last, (3,), for both axes."""
-    ends, every = np.array([0, -1]), slice(None)
-    down, across = source.points(ends, every), source.points(every, ends)
+    ends = np.array([0, -1])
+    every = slice(None)
+    down = source.points(ends, every)
+    across = source.points(every, ends)
     return np.mean(down[1] - down[0], axis=0), np.mean(across[:, 1] - across[:, 0], axis=0)
 
 
 def source_of(data: Any, **options: Any) -> NodeSource:
     """Return what a pyramid is built from: a field, a mesh, a dataset, or files, with options."""
-    source, uncertainty = _source_of(data, **options), options.get("uncertainty")
-    return source if uncertainty is None else source.with_uncertainty(uncertainty)
+    source = _source_of(data, **options)
+    uncertainty = options.get("uncertainty")
+    if uncertainty is None:
+        return source
+    return source.with_uncertainty(uncertainty)
 
 
 def _source_of(data: Any, *, name: str = "", **given: Any) -> NodeSource:
@@ -201,7 +224,9 @@ def _source_of(data: Any, *, name: str = "", **given: Any) -> NodeSource:
         refused = {**given, "name": name or None, "uncertainty": None}
         if names := [key for key, value in refused.items() if value is not None]:
             raise FieldError(f"{', '.join(names)} applies to the data of a field; omit it")
-        return data if isinstance(data, NodeSource) else FieldSource(data)
+        if isinstance(data, NodeSource):
+            return data
+        return FieldSource(data)
     if is_store(data):
         raise FieldError(f"{data} is already a pyramid; give the data from which one is built")
     options = FieldOptions.of_dataset(given)
@@ -209,7 +234,10 @@ def _source_of(data: Any, *, name: str = "", **given: Any) -> NodeSource:
     regions = options.uncertainty is None or isinstance(options.uncertainty, str)
     if is_dataset(data):
         return _source_from(read_datasets(data, options, name=name, regions=regions))
-    items = data if isinstance(data, (list, tuple)) else [data]
+    if isinstance(data, (list, tuple)):
+        items = data
+    else:
+        items = [data]
     if not all(isinstance(each, (str, Path)) for each in items):
         given.pop("uncertainty", None)
         return FieldSource(FlowField.from_pyvista(data, name=name, **given))
@@ -277,7 +305,10 @@ def datasets_at(place: str, options: FieldOptions) -> list[Any]:
     except FieldError as error:  # of the checks
         raise FieldError(f"{place}: {error}") from None
     except Exception as error:
-        words = str(error) if isinstance(error, ReadFault) else fault_words(error)
+        if isinstance(error, ReadFault):
+            words = str(error)
+        else:
+            words = fault_words(error)
         raise PyramidError(
             f"{place} contains no readable pyramid ({words}); build one, or give a Zarr group that "
             "xarray can open (on the web see zarr.consolidate_metadata)"

@@ -84,7 +84,10 @@ def open_store(store: str | Path, *, uncertainty: Any = None, **options: Any) ->
             f"{levels.place} is incomplete: its coarsest level is missing; build it again"
         )
     stored = levels.template.uncertainty
-    requested = uncertainty if isinstance(uncertainty, str) else "an array"
+    if isinstance(uncertainty, str):
+        requested = uncertainty
+    else:
+        requested = "an array"
     if uncertainty is not None and requested not in (stored, stored.removeprefix(spread_name(""))):
         raise FieldError(
             f"uncertainty is {requested}, but {levels.place} was built with {stored or 'none'}"
@@ -158,7 +161,9 @@ class StoredPyramid(Pyramid):
 
     def _check_nodes(self, key: TileKey, textures: TextureSet, steps: Sequence[int]) -> None:
         """Raise a PyramidError where nodes of a tile are not those of the level above."""
-        stored, field, drawn = self._stored, textures.geometry.field, textures.grid.drawn
+        stored = self._stored
+        field = textures.geometry.field
+        drawn = textures.grid.drawn
         valid = field.valid[drawn]
         first = [at * self.about["tile_cells"] for at in key[1:]]
         above = [
@@ -222,7 +227,10 @@ def _field_of_others(place: str, options: FieldOptions) -> FlowField:
         return math.prod(dataset.sizes[axis] for axis in axes)
 
     fitting = [dataset for dataset in (finest, *coarser) if nodes(dataset) <= WHOLE_NODES]
-    drawn = fitting[0] if fitting else [finest, *coarser][-1]
+    if fitting:
+        drawn = fitting[0]
+    else:
+        drawn = [finest, *coarser][-1]
     every = math.ceil(math.sqrt(nodes(drawn) / WHOLE_NODES))
     drawn = drawn.isel({axis: slice(None, None, every) for axis in axes})
     if nodes(drawn) < nodes(finest):

@@ -79,7 +79,8 @@ class TileTask(NamedTuple):
 
 def make_finest(source: NodeSource, place: str, run: str, part: Part) -> None:
     """Make a part of level 0 from the source; the first step determines the valid nodes."""
-    levels, array = _levels(place, run), _writable(place, run)
+    levels = _levels(place, run)
+    array = _writable(place, run)
     nodes = _source_nodes(levels, source, part)
     write_part(array, levels.about, part, part.lines(source.shape), _as_written(nodes))
 
@@ -101,7 +102,8 @@ def compare_finest(source: NodeSource, place: str, run: str, part: Part) -> None
 
 def mend(place: str, run: str, unit: Part | TileTask) -> None:
     """Remove a part, or a tile at its steps, that is incomplete or corrupt."""
-    levels, store = _levels(place, run), store_at(place, read_only=False)
+    levels = _levels(place, run)
+    store = store_at(place, read_only=False)
     for step_unit, check in checks_of(levels, unit):
         try:
             check()
@@ -131,7 +133,8 @@ def _objects(about: About, unit: Part | TileTask) -> Iterator[str]:
             yield from (f"{level}/{name}/c/{row}/{column}" for name in ("valid", "has_position"))
             yield f"{level}/points/c/{row}/{column}/0"
         return
-    (level, row, column), (step,) = unit.key, unit.steps
+    (level, row, column) = unit.key
+    (step,) = unit.steps
     yield f"{level}/{FLOW}/c/{step}/{row}/{column}/0"
     for number in range(len(value_names(about))):
         yield f"{level}/{VALUES}/c/{step}/{row}/{column}/{number}/0"
@@ -154,11 +157,14 @@ def _as_written(nodes: Nodes) -> Nodes:
 def make_part(place: str, run: str, part: Part) -> None:
     """Make a part of a level from the level before it."""
     levels = _levels(place, run)
-    about, finer = levels.about, part.level - 1
+    about = levels.about
+    finer = part.level - 1
     shape = [len(level_lines(n, part.level)) for n in about["nodes"]]
     chosen = part.lines((shape[0], shape[1]))
     # As lines of the finer level: these, and those from which they are averaged.
-    picks, around, needed = [], [], []
+    picks = []
+    around = []
+    needed = []
     for count, span, closed in zip(about["nodes"], chosen, about["periodic"], strict=True):
         fine = level_lines(count, finer)
         lines = np.searchsorted(fine, level_lines(count, part.level)[span])
@@ -180,7 +186,8 @@ def write_part(
     array: Arrays, about: About, part: Part, lines: tuple[slice, slice], nodes: Nodes
 ) -> None:
     """Write a part of a level; velocity (J, I, C) and scalars (J, I) are those of its step."""
-    level, components = part.level, about["components"]
+    level = part.level
+    components = about["components"]
     for name, values in nodes.scalars.items():
         if part.step < about["scalars"][name]:
             array(f"{level}/scalars/{name}")[(part.step, *lines)] = values
@@ -236,7 +243,8 @@ def write_tile(array: Arrays, pyramid: StoredPyramid, key: TileKey, steps: Seque
     """Write the data of a tile for browsers at some steps; with step 0 also its surface."""
     fingerprint = pyramid.about["fingerprint"]
     textures = _textures(pyramid, key)
-    data, at = None, key[1:]
+    data = None
+    at = key[1:]
     if textures is not None:
         # A page of a store may have some of its steps, which pathlines lead through.
         is_steady = textures.store.streamlines
@@ -356,7 +364,8 @@ class Threads:
                     return None
             return result
 
-        count, left = self.count(need), iter(tasks)
+        count = self.count(need)
+        left = iter(tasks)
         with pool(count, "flowtex-pyramid") as threads:
             # No more tasks wait than keep all workers busy: the caller may stop after a failure.
             running = {threads.submit(tried, task) for task in islice(left, 2 * count)}
@@ -379,7 +388,10 @@ class Cluster(Threads):
         super().__init__()
         distributed = import_extra("distributed", "store")
         self._owns_client = isinstance(scheduler, str)
-        self._client = distributed.Client(scheduler) if self._owns_client else scheduler
+        if self._owns_client:
+            self._client = distributed.Client(scheduler)
+        else:
+            self._client = scheduler
         self._as_completed = distributed.as_completed
 
     def run(
@@ -437,4 +449,6 @@ def _packed(value: object) -> bytes | None:
         raise PyramidError(
             f"the dataset cannot be sent to workers ({error}); build without a scheduler"
         ) from error
-    return data if len(data) <= MOST_SENT else None
+    if len(data) <= MOST_SENT:
+        return data
+    return None

@@ -116,10 +116,18 @@ class ArrowSeeds:
 
     def _make(self, view: TileView, spacing: float) -> Seeds:
         geometry = self._geometry
-        distance = np.inf if view.eye is None else norm(geometry.center - view.eye)
-        nearest = max(distance - 0.5 * geometry.extent, 0.0) if view.eye is not None else 1.0
+        if view.eye is None:
+            distance = np.inf
+        else:
+            distance = norm(geometry.center - view.eye)
+        if view.eye is not None:
+            nearest = max(distance - 0.5 * geometry.extent, 0.0)
+        else:
+            nearest = 1.0
         least = CLOSER * spacing * view.pixel(np.array(nearest))
-        radius, parts, seeds = geometry.extent, self._cells, self._whole[0]
+        radius = geometry.extent
+        parts = self._cells
+        seeds = self._whole[0]
         for octave in range(MOST_OCTAVES):
             area = CANDIDATE_AREA * radius**2
             if self._sums[-1] <= MOST_CANDIDATES * area:
@@ -168,7 +176,8 @@ class ArrowSeeds:
             distance = np.minimum(nearest[0], most)
         order = np.argsort(-distance, kind="stable")
         order = order[distance[order] >= least]
-        position, distance = candidates.position[order], distance[order]
+        position = candidates.position[order]
+        distance = distance[order]
         taken = []
         if len(order):
             neighbours: Any = scipy.spatial.cKDTree(position).query_ball_point(position, most)
@@ -192,10 +201,12 @@ class ArrowSeeds:
     def _divided(self, parts: _Parts, area: float) -> _Parts:
         """Halve parts along their longer sides until none is larger than an area."""
         while (large := self._areas(parts) > area).any():
-            large_parts, rest = parts[large], parts[~large]
+            large_parts = parts[large]
+            rest = parts[~large]
             sides = norm(self._sides(large_parts))
             axis = (sides[1] > sides[0]).astype(int)
-            size, rows = large_parts.size.copy(), np.arange(len(axis))
+            size = large_parts.size.copy()
+            rows = np.arange(len(axis))
             size[rows, axis] *= 0.5
             beyond = large_parts.low.copy()
             beyond[rows, axis] += size[rows, axis]
@@ -220,8 +231,10 @@ class ArrowSeeds:
 
 def _between(corners: NDArray[np.floating], place: Floats) -> Floats:
     """Interpolate between the corners (n, 4, ...) of cells at places (n, 2)."""
-    (i, j), values = place.T.reshape(2, -1, *[1] * (corners.ndim - 2)), np.moveaxis(corners, 1, 0)
-    low, high = (1 - i) * values[0] + i * values[1], (1 - i) * values[2] + i * values[3]
+    (i, j) = place.T.reshape(2, -1, *[1] * (corners.ndim - 2))
+    values = np.moveaxis(corners, 1, 0)
+    low = (1 - i) * values[0] + i * values[1]
+    high = (1 - i) * values[2] + i * values[3]
     return np.asarray((1 - j) * low + j * high)
 
 

@@ -365,9 +365,10 @@ class Camera:
             the precision of a mesh far from the origin.
         """
         axes = self.axes
-        half = (
-            self.parallel_scale if self.parallel else float(np.tan(np.radians(self.view_angle / 2)))
-        )
+        if self.parallel:
+            half = self.parallel_scale
+        else:
+            half = float(np.tan(np.radians(self.view_angle / 2)))
         view = np.zeros((3, 4))
         view[:, :3] = axes
         view[:, 3] = axes @ np.subtract(origin, self.position, dtype=float)
@@ -398,12 +399,16 @@ class Camera:
         """Return the origin and the unit direction of the ray through a point of the view."""
         right, up, ahead = self.axes
         target = np.asarray(self.focal_point) + (right * x * aspect + up * y) * self.height
-        start = target - ahead * self.distance if self.parallel else np.asarray(self.position)
+        if self.parallel:
+            start = target - ahead * self.distance
+        else:
+            start = np.asarray(self.position)
         return start, (target - start) / np.linalg.norm(target - start)
 
     def is_near(self, surface: Surface) -> bool:
         """Return whether double precision resolves the surface from this camera."""
-        eye, focus = np.asarray(self.position), np.asarray(self.focal_point)
+        eye = np.asarray(self.position)
+        focus = np.asarray(self.focal_point)
         offsets = np.abs([eye - surface.center, focus - surface.center])
         sizes = (float(np.abs(eye - focus).max()), self.parallel_scale)
         return bool(offsets.max() <= FARTHEST_REACH * surface.extent) and all(

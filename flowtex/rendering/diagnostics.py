@@ -139,11 +139,16 @@ def run_trial(command: Sequence[str], timeout: float = TRIAL_TIMEOUT_S) -> OpenG
     lines = process.stdout.strip().splitlines()
     if process.returncode == 0 and lines:
         report = OpenGLReport(**json.loads(lines[-1]))
-        return report if report.usable else _unusable(report.failure)
+        if report.usable:
+            return report
+        return _unusable(report.failure)
     code = process.returncode
     if code >= 0:
         errors = re.sub(r"\x1b\[[0-9;]*m", "", process.stderr).strip().splitlines()
-        detail = f"; its last message: {errors[-1].rstrip('.')}" if errors else ""
+        if errors:
+            detail = f"; its last message: {errors[-1].rstrip('.')}"
+        else:
+            detail = ""
         return _unusable(f"the test process ended with code {code}{detail}")
     # Before a crash VTK prints advice about another library than the one that is missing.
     name = signal.strsignal(-code) or f"signal {-code}"
@@ -194,7 +199,10 @@ def install_command(*packages: str) -> str:
     """Return the command that installs Debian packages, or their names for other systems."""
     if shutil.which("apt-get") is None:
         return f"install Mesa's OpenGL (on Debian and Ubuntu: {' '.join(packages)})"
-    sudo = "" if os.geteuid() == 0 else "sudo "
+    if os.geteuid() == 0:
+        sudo = ""
+    else:
+        sudo = "sudo "
     install = f"{sudo}apt-get install --no-install-recommends {' '.join(packages)}"
     return f"{sudo}apt-get update && {install}"
 
@@ -206,7 +214,8 @@ def try_opengl() -> OpenGLReport:
     from vtkmodules.vtkRenderingCore import vtkRenderer, vtkRenderWindow
 
     window = gl.vtkOpenGLRenderWindow.SafeDownCast(vtkRenderWindow())
-    renderer, pixel = vtkRenderer(), vtkUnsignedCharArray()
+    renderer = vtkRenderer()
+    pixel = vtkUnsignedCharArray()
     window.SetOffScreenRendering(1)
     window.SetSize(16, 16)
     renderer.SetBackground(1.0, 0.0, 0.0)

@@ -64,7 +64,8 @@ def map_box(field: FlowField) -> Floats:
 
 def map_lines(field: FlowField, *, has_globe: bool) -> dict[str, MapLines]:
     """Return coasts and graticule by their options; they end where cells and land do."""
-    projection, box = field.projection, map_box(field)
+    projection = field.projection
+    box = map_box(field)
     if projection is None:
         return {}
     if field.surface.is_closed:  # which has no border
@@ -163,7 +164,9 @@ def empty_cells(field: FlowField, *, tiled: bool = False) -> Bools:
     """
     surface = field.surface
     seen_through = tiled and field.triangles is None
-    return surface.placed_cells if seen_through else surface.placed_cells & ~surface.cells
+    if seen_through:
+        return surface.placed_cells
+    return surface.placed_cells & ~surface.cells
 
 
 def globe_radius(field: FlowField) -> float | None:

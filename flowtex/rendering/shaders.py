@@ -83,7 +83,9 @@ def _constant(kind: str, value: str) -> Any:
     if kind == "mat3":
         return np.array(numbers, dtype=float).reshape(3, 3)
     whole = np.array([int(number, 0) for number in numbers], dtype=np.uint32)
-    return whole[0] if kind == "uint" else whole
+    if kind == "uint":
+        return whole[0]
+    return whole
 
 
 class _Constants:

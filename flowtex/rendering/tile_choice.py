@@ -38,7 +38,9 @@ class TileView:
 
     def distances(self, points: Floats) -> Floats:
         """Return distances of points (..., 3) from the eye, or 1 where rays are parallel."""
-        return np.ones(points.shape[:-1]) if self.eye is None else norm(points - self.eye)
+        if self.eye is None:
+            return np.ones(points.shape[:-1])
+        return norm(points - self.eye)
 
     def pixel(self, distance: Floats) -> Floats:
         """Return the length that a pixel covers at distances from the eye."""
@@ -46,7 +48,8 @@ class TileView:
 
     def cell_sizes(self, blocks: Floats) -> Floats:
         """Return the greatest size of the cells of blocks (J, I, 5), in pixels."""
-        radius, size = blocks[..., 3], blocks[..., 4]
+        radius = blocks[..., 3]
+        size = blocks[..., 4]
         distance = self.distances(blocks[..., :3])
         if self.eye is not None:
             distance = np.maximum(distance - radius, size)
@@ -77,20 +80,30 @@ def choose_tiles(pyramid: Pyramid, view: TileView) -> Choices:
     waiting: list[TileKey | None] = [None]
     while waiting:
         key = waiting.pop(0)
-        level = pyramid.depth if key is None else key.level
+        if key is None:
+            level = pyramid.depth
+        else:
+            level = key.level
         rows, columns = pyramid.blocks_of(key)
         places = pyramid.places(level)[rows, columns]
-        seen, pixels = view.sees(places[..., :3], places[..., 3]), view.cell_sizes(places)
+        seen = view.sees(places[..., :3], places[..., 3])
+        pixels = view.cell_sizes(places)
         if (visible := view.visible) is not None:
             for axis, count in enumerate(visible.shape):
                 visible = np.logical_or.reduceat(visible, np.arange(0, count, 1 << level), axis)
             seen &= visible[rows, columns]
-        coarse = seen & (pixels > view.cell_pixels) if level else np.zeros_like(seen)
+        if level:
+            coarse = seen & (pixels > view.cell_pixels)
+        else:
+            coarse = np.zeros_like(seen)
         if coarse.any():
             pixels = view.cell_sizes(pyramid.smooth_places(level)[rows, columns])
             coarse &= pixels > view.cell_pixels
         shown = seen & ~coarse
-        children = pyramid.children(key) if coarse.any() else []
+        if coarse.any():
+            children = pyramid.children(key)
+        else:
+            children = []
         finer = [child for child in children if coarse[finer_part(pyramid, child, key)].any()]
         chosen[key] = Choice(bool(shown.any()), float(pixels[shown].max(initial=0.0)), finer)
         waiting += finer

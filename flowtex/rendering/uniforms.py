@@ -192,7 +192,8 @@ def arrow_distance(settings: Settings) -> float:
 
 def is_near(textures: TextureSet, settings: Settings, view: ViewState) -> bool:
     """Return whether a path may be so short that it stays in a cell where the flow turns."""
-    near, geometry = view.pixel, textures.geometry
+    near = view.pixel
+    geometry = textures.geometry
     if view.eye[3]:
         to_focus = float(np.linalg.norm(view.eye[:3] - view.focus))
         away = float(np.linalg.norm(view.eye[:3] - geometry.center)) - 0.5 * geometry.extent
@@ -202,7 +203,8 @@ def is_near(textures: TextureSet, settings: Settings, view: ViewState) -> bool:
 
 
 def _distance(textures: TextureSet, settings: Settings, view: ViewState, pixel: float) -> float:
-    grain, extent = pixel * settings.grain * view.density, textures.geometry.extent
+    grain = pixel * settings.grain * view.density
+    extent = textures.geometry.extent
     if not settings.lod:
         grain = extent / settings.resolution
     elif settings.fixed_grain:
@@ -231,10 +233,13 @@ def _motion(textures: TextureSet, settings: Settings, view: ViewState) -> Values
         # Whole turns count for nothing, and single precision holds no more.
         turns = (view.time - first) / period % MOST_TURNS
         travel = textures.typical_speed * period
-        pixels, by_speed = False, True
+        pixels = False
+        by_speed = True
     else:
-        turns, travel = view.clock / settings.period % MOST_TURNS, settings.speed * settings.period
-        pixels, by_speed = settings.speed_in == "pixels", settings.motion == "speed"
+        turns = view.clock / settings.period % MOST_TURNS
+        travel = settings.speed * settings.period
+        pixels = settings.speed_in == "pixels"
+        by_speed = settings.motion == "speed"
     coarse = float(np.floor(turns / CLOCK_STEP) * CLOCK_STEP)
     return {
         "u_clock": (coarse, float(turns - coarse)),
@@ -247,7 +252,8 @@ def _motion(textures: TextureSet, settings: Settings, view: ViewState) -> Values
 
 def _noise_origin(focus: Floats, finest: float, anchor: Floats) -> Values:
     """Return the noise's origin near the focus, in space and in the finest cells."""
-    coarse, limit = 2**CLEAR_DOUBLINGS, 2 ** (NOISE_DOUBLINGS - CLEAR_DOUBLINGS) - 1
+    coarse = 2**CLEAR_DOUBLINGS
+    limit = 2 ** (NOISE_DOUBLINGS - CLEAR_DOUBLINGS) - 1
     even = np.clip(np.rint(focus / finest / coarse), -limit, limit) * coarse + 0.0
     odd = even / np.sqrt(2.0)
     odd_cell = np.floor(odd / coarse) * coarse

@@ -134,7 +134,10 @@ def compose(
     """
     counts = np.maximum(np.searchsorted(lags, longest / unit) + 1, direct)
     lookup = _SliceLookup(field, lags, unit, side, landing * int(direction), counts)
-    beside = None if field.surface.poles is None else integrate
+    if field.surface.poles is None:
+        beside = None
+    else:
+        beside = integrate
     for m in range(1, len(lags) + 1):
         if m > direct:
             _Doubling(lookup, m, beside).run(run)
@@ -226,7 +229,10 @@ class _SliceLookup:
         """
         base = self._base(step)
         unit = self._unit_in(corners)
-        longest = self._longest[corners.at + base] if most is None else most
+        if most is None:
+            longest = self._longest[corners.at + base]
+        else:
+            longest = most
         lag: AnyArray = np.minimum(left / unit, longest)
         if lag.min() == lag.max():
             # Even cells, smooth slices: one slice for all.
@@ -277,7 +283,9 @@ class _SliceLookup:
 
     def _base(self, step: Indices | int) -> Indices | int:
         """Return the number, among those of all steps, of the first node of a step."""
-        return step * self.grid.size if self.unsteady else 0
+        if self.unsteady:
+            return step * self.grid.size
+        return 0
 
     def _mirror(self, moved: Complexes, position: Floats32) -> None:
         """Turn displacements from positions beyond a pole to run as index space does there."""
@@ -305,14 +313,21 @@ class _Doubling:
     """Continuation of paths, (T * J * I,) of them, from one slice to the next."""
 
     def __init__(self, lookup: _SliceLookup, m: int, integrate: Integrate | None) -> None:
-        count, nodes = len(lookup.reach), lookup.grid.size
-        before, lag = lookup.knots[m - 1], lookup.knots[m]
-        self._lookup, self._lag, self._before = lookup, lag, before
+        count = len(lookup.reach)
+        nodes = lookup.grid.size
+        before = lookup.knots[m - 1]
+        lag = lookup.knots[m]
+        self._lookup = lookup
+        self._lag = lag
+        self._before = before
         self._moved = lookup.slices[m]
         self._moved[:] = lookup.slices[m - 1]
         going = np.tile(lookup.counts.ravel() >= m, count // nodes)
         #: Paths that are followed, ``None`` for all; the others stay where they are.
-        self._which = None if going.all() else np.flatnonzero(going)
+        if going.all():
+            self._which = None
+        else:
+            self._which = np.flatnonzero(going)
         self._whole = lag * lookup.unit
         self._left = np.tile((lag - before) * lookup.unit, count // nodes)
         self._integrate = integrate
@@ -328,11 +343,15 @@ class _Doubling:
             blocks = _parts(self._which)
         for number in range(2 * MOST_PIECES if blocks else 0):
             check()
-            longest = self._before if number >= MOST_PIECES else None
+            if number >= MOST_PIECES:
+                longest = self._before
+            else:
+                longest = None
             unfinished = np.concatenate(list(run(partial(self.follow, longest=longest), blocks)))
             if self._stuck and (not len(unfinished) or (number + 1) % TOGETHER == 0):
                 # Many at once: each call has an overhead.
-                stuck, self._stuck = np.concatenate(self._stuck), []
+                stuck = np.concatenate(self._stuck)
+                self._stuck = []
                 work = partial(self._pass, final=number >= MOST_PIECES)
                 unfinished = np.concatenate([unfinished, *run(work, _parts(stuck))])
             if not len(unfinished):
@@ -351,13 +370,17 @@ class _Doubling:
             if stuck.any():
                 self._stuck.append(_numbers(selection, np.flatnonzero(stuck)))
                 free = np.flatnonzero(~stuck)
-                selection, position = _numbers(selection, free), position[:, free]
+                selection = _numbers(selection, free)
+                position = position[:, free]
                 corners = Corners(*(part[free] for part in corners))
         left = self._left[selection]
         if not len(left):
             return np.empty(0, np.intp)
         piece = lookup.continued(position, corners, left, self._at(selection), longest)
-        whole = self._whole[:1] if lookup.even else self._whole[self._node(selection)]
+        if lookup.even:
+            whole = self._whole[:1]
+        else:
+            whole = self._whole[self._node(selection)]
         self._suspect(selection, position, piece)
         self._moved[selection] += piece.moved
         left -= piece.covered
@@ -374,7 +397,9 @@ class _Doubling:
 
     def _at(self, selection: Selection) -> Indices | int:
         """Return the time steps at which some paths are."""
-        return self._step[selection] if self._lookup.unsteady else 0
+        if self._lookup.unsteady:
+            return self._step[selection]
+        return 0
 
     def _positions(self, selection: Selection) -> Floats32:
         """Return current positions of some paths, (2, n)."""
@@ -382,14 +407,20 @@ class _Doubling:
 
     def _pass(self, which: Indices, *, final: bool) -> Indices:
         """Integrate paths past a pole, or to their end, and return those that must go further."""
-        lookup, left, step = self._lookup, self._left[which], self._step[which]
+        lookup = self._lookup
+        left = self._left[which]
+        step = self._step[which]
         if self._integrate is None:
             return which
         position = self._positions(which)
-        within = None if lookup.unsteady or final else lookup.stuck
+        if lookup.unsteady or final:
+            within = None
+        else:
+            within = lookup.stuck
         scale = lookup.scale
         moved, covered, ends = self._integrate(position, left.astype(float) * scale, step, within)
-        covered, ends = covered / scale, ends / scale
+        covered = covered / scale
+        ends = ends / scale
         self._moved[which] += moved[0] + 1j * moved[1]
         self._left[which] = left - covered
         lookup.polar.reshape(-1)[which] = True
@@ -412,7 +443,8 @@ class _Doubling:
             ended = np.flatnonzero(ending)
             ended = ended[np.isinf(lookup.reach[_numbers(selection, ended)])]
             which = _numbers(selection, ended)
-            rest, left = np.broadcast_to(rest, ending.shape)[ended], self._left[which]
+            rest = np.broadcast_to(rest, ending.shape)[ended]
+            left = self._left[which]
             parts = which, position[:, ended], piece.covered[ended], rest, left, self._step[which]
             self._suspects.append(parts)
 
@@ -434,7 +466,8 @@ class _Doubling:
         for _ in range(SEARCH_BISECTIONS):
             middle = (low + high) / 2
             outside = self._outside(start, middle * length, step)
-            low, high = np.where(outside, low, middle), np.where(outside, middle, high)
+            low = np.where(outside, low, middle)
+            high = np.where(outside, middle, high)
         further = np.where(leaves, low * length, np.where(rest < length, rest, np.inf))
         whole = self._whole[which % self._lookup.grid.size]
         self._lookup.reach[which] = self._lag * (1 - (left - further) / whole)

@@ -93,7 +93,10 @@ class Columns:
     def pick(self, mask: Bools | Indices) -> Self:
         """Return some of the particles."""
         # Numbers are several times as fast as a mask where there is more than one row.
-        at = np.flatnonzero(mask) if mask.dtype == bool else mask
+        if mask.dtype == bool:
+            at = np.flatnonzero(mask)
+        else:
+            at = mask
         parts = vars(self).values()
         return type(self)(*(None if part is None else part.take(at, axis=-1) for part in parts))
 
@@ -149,7 +152,8 @@ class _Run:
     ) -> None:
         count = start.shape[1]
         self.sampler, self.direction, self.tolerance = sampler, direction, tolerance
-        self.charts, self.within = sampler.charts, within
+        self.charts = sampler.charts
+        self.within = within
         #: Lag to the first or last time step, beyond which the flow is constant.
         self.span = direction * (sampler.times[0 if direction < 0 else -1] - sampler.destination)
         self.lags = lags
@@ -224,7 +228,9 @@ class _Run:
     def _try(self, h: Floats) -> tuple[IntegrationStep, Floats]:
         """Return one Bogacki-Shampine step, and its estimated error in cells, (N,)."""
         state = self.state
-        y, k1, lag = state.y, state.rate, state.lag
+        y = state.y
+        k1 = state.rate
+        lag = state.lag
         k2 = self._rate(y + (0.5 * h) * k1, lag + 0.5 * h, k1)
         k3 = self._rate(y + (0.75 * h) * k2, lag + 0.75 * h, k2)
         after = y + h * (2 / 9 * k1 + 1 / 3 * k2 + 4 / 9 * k3)
@@ -253,13 +259,17 @@ class _Run:
             out = step.pick(outside)
             s = share[outside]
             ended = state.pick(outside)
-            ended.y, ended.lag = out.at(s), out.lag0 + s * out.h
+            ended.y = out.at(s)
+            ended.lag = out.lag0 + s * out.h
             self.go_straight(ended, out.k0 + s * (out.k1 - out.k0))
             state.next[outside] = len(self.lags)
-        state.y, state.rate, state.lag = step.y1, step.k1, step.lag0 + step.h
+        state.y = step.y1
+        state.rate = step.k1
+        state.lag = step.lag0 + step.h
         self._interrupt(state, index, outside)
         if state.chart is not None:
-            before, state.index = state.index, index
+            before = state.index
+            state.index = index
             self._change_chart(state, before)
 
     def _interrupt(self, state: _Particles, index: Floats, outside: Bools) -> None:
@@ -302,18 +312,23 @@ class _Run:
                 state.next += 1
                 continue
             d = np.flatnonzero(due)
-            due_step = step if len(d) == len(s) else step.pick(d)
+            if len(d) == len(s):
+                due_step = step
+            else:
+                due_step = step.pick(d)
             positions = self._index(due_step.at(s[d]), due_step)
             self.out[state.next[d], :, state.which[d]] = positions.T
             state.next[d] += 1
 
     def _border(self, step: IntegrationStep) -> Floats:
         """Return the share of a step to the outside that is still inside, by bisection."""
-        low, high = np.zeros(len(step.h)), np.ones(len(step.h))
+        low = np.zeros(len(step.h))
+        high = np.ones(len(step.h))
         for _ in range(BISECTIONS):
             middle = (low + high) / 2
             inside = self.sampler.alive(self._index(step.at(middle), step))
-            low, high = np.where(inside, middle, low), np.where(inside, high, middle)
+            low = np.where(inside, middle, low)
+            high = np.where(inside, high, middle)
         return low
 
     def go_straight(self, state: _Particles, rate: Floats) -> None:

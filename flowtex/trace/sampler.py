@@ -63,13 +63,19 @@ class Sampler:
         # Lags count from the destination time.
         self.times, self.destination = field.times, float(field.times[-1])
         #: Longest step in units of lag, which misses no change in time.
-        self.longest = np.inf if field.steady else float(np.diff(field.times).max())
+        if field.steady:
+            self.longest = np.inf
+        else:
+            self.longest = float(np.diff(field.times).max())
         data = fill_blanked(data, field.valid, data.ndim - 3)
         parts = [np.ascontiguousarray(data[..., c]).ravel() for c in range(data.shape[-1])]
         grid = NodeGrid.of(field)
         self._poles = poles = field.surface.poles
         #: The charts of a surface that has poles.
-        self.charts = None if poles is None else Charts(poles)
+        if poles is None:
+            self.charts = None
+        else:
+            self.charts = Charts(poles)
         #: Whether particles are inside the domain, in a cell that is not blanked.
         self.alive = grid.alive
         self.grid = grid
@@ -113,13 +119,20 @@ class Sampler:
         if self._metric and ahead is not None:
             result *= self._sign(position, result, ahead, chart)
             return result
-        return np.negative(result, out=result) if direction < 0 else result
+        if direction < 0:
+            return np.negative(result, out=result)
+        return result
 
     def _sign(self, position: Floats, one: Floats, two: Floats, chart: Numbers | None) -> Floats:
         """Return 1, or -1 where rates (2, N) form an angle above 90 degrees in space, (N,)."""
         along = one[0] * two[0] + one[1] * two[1]
-        flat = slice(None) if chart is None else np.flatnonzero(chart == 0)
-        flat_position, (a, b), (c, d) = position[:, flat], one[:, flat], two[:, flat]
+        if chart is None:
+            flat = slice(None)
+        else:
+            flat = np.flatnonzero(chart == 0)
+        flat_position = position[:, flat]
+        (a, b) = one[:, flat]
+        (c, d) = two[:, flat]
         at = self.grid.corners(flat_position).at
         ii, ij, jj = (part[at] for part in self._metric)
         if self._poles is not None:
@@ -242,7 +255,10 @@ class Charts:
         index = self._poles.fold(index)
         result = np.zeros(index.shape[1], np.int8)
         for number, pole in enumerate(self._poles, 1):
-            stay = 0 if chart is None else LEAVE_CELLS * (chart == number)
+            if chart is None:
+                stay = 0
+            else:
+                stay = LEAVE_CELLS * (chart == number)
             result[pole.depth(index) < self.near + stay] = number
         return result
 
@@ -290,7 +306,10 @@ def cap(pole: Pole, grid: NodeGrid, data: list[Floats], near: int) -> Patch:
     shape = (-1, grid.rows, grid.columns)
     lines = (grid.rows if pole.component else grid.columns) - 1
     depth = min(near + LEAVE_CELLS + SPARE_CELLS, lines)
-    first = pole.line if pole.inward > 0 else pole.line - depth
+    if pole.inward > 0:
+        first = pole.line
+    else:
+        first = pole.line - depth
     # The second axis is that of the lines around the pole.
     strips = [pole.lines(a.reshape(shape), 1)[:, first : first + depth + 1] for a in data]
     strips[:2] = _to_plane(pole, strips[1 - pole.component], strips[pole.component])
@@ -310,9 +329,13 @@ def _to_plane(pole: Pole, around: Floats, across: Floats) -> list[Floats]:
     rays = pole.rays / pole.size
     turn = (np.roll(rays[:-1], -1, axis=0) - np.roll(rays[:-1], 1, axis=0)) / 2
     turn = np.concatenate([turn, turn[:1]])
-    at = 0 if pole.inward > 0 else -1
+    if pole.inward > 0:
+        at = 0
+    else:
+        at = -1
     depth = np.arange(around.shape[1], dtype=float)[:, None]
-    depth = depth if pole.inward > 0 else depth[::-1]
+    if not (pole.inward > 0):
+        depth = depth[::-1]
     at_pole = pole.vector(across[:, at]) / pole.size
     components = []
     for c in range(2):
@@ -347,7 +370,10 @@ class NodeGrid:
         self.periodic = periodic
         self.poles = poles
         # One entry for each lower corner, so that Corners.at finds it.
-        self.open = None if cells.all() else np.pad(cells, ((0, 1), (0, 1))).ravel()
+        if cells.all():
+            self.open = None
+        else:
+            self.open = np.pad(cells, ((0, 1), (0, 1))).ravel()
 
     @classmethod
     def of(cls, field: FlowField) -> NodeGrid:

@@ -162,26 +162,37 @@ class TraceSlices:
         count = len(self.times)
         expected = f"a number of a time step, from {-count} to {count - 1}"
         step = checked_count("step", step, -count, count - 1, expected=expected)
-        sign, data, reach = -1.0, self.displacement, self.reach
+        sign = -1.0
+        data = self.displacement
+        reach = self.reach
         if forward:
             if self.forward is None or self.forward_reach is None:
                 raise FieldError("the slices have no forward side: trace with two_sided=True")
-            sign, data, reach = 1.0, self.forward, self.forward_reach
+            sign = 1.0
+            data = self.forward
+            reach = self.forward_reach
         held = np.minimum(lag, reach[step].astype(float))
         knots = np.concatenate([[0.0], self.lags])
         m, late = bracket(knots, held)
         late = late[..., None]
         mean = data[step] / self.lags[:, None, None, None]
         # Rates on triangles are along tangents, which are not known here.
-        begin = mean[:1] if self.in_space else sign * self.rate[step][None]
+        if self.in_space:
+            begin = mean[:1]
+        else:
+            begin = sign * self.rate[step][None]
         mean = np.concatenate([begin, mean])
         rows, columns = np.indices(self.shape)
-        before, after = mean[m, rows, columns], mean[m + 1, rows, columns]
+        before = mean[m, rows, columns]
+        after = mean[m + 1, rows, columns]
         return np.asarray(self.nodes + held[..., None] * (before * (1 - late) + after * late))
 
     def __repr__(self) -> str:
         rows, columns = self.shape
-        sides = "backward" if self.forward is None else "backward and forward"
+        if self.forward is None:
+            sides = "backward"
+        else:
+            sides = "backward and forward"
         return (
             f"TraceSlices({columns} x {rows} nodes (I x J), {len(self.times)} destination times, "
             f"{len(self.lags)} lags by {self.parameter}, {sides}, {self.nbytes / 1e6:.1f} MB)"
@@ -219,17 +230,24 @@ def choose_lags(
         longest = longest_path(field)
     least = LEAST_LAGS + bool(field.uncertainty)
     if parameter == "arclength":
-        first, last = first_cells, longest / small_cell(field)
+        first = first_cells
+        last = longest / small_cell(field)
     else:
         speed = field.typical.index_velocity.speed[:, field.valid]
-        moving = speed > 1e-6 * speed.max() if speed.any() else np.zeros_like(speed, dtype=bool)
+        if speed.any():
+            moving = speed > 1e-6 * speed.max()
+        else:
+            moving = np.zeros_like(speed, dtype=bool)
         if not moving.any():
             return RATIO ** np.arange(float(least))
         size = field.surface.cell_size[field.valid]
         crossing = np.broadcast_to(size, speed.shape)[moving] / speed[moving]
         first = first_cells * float(np.percentile(crossing, 10))
         on_earth = field.projection is not None
-        typical = typical_speed(field) if on_earth else np.sqrt(np.mean(speed[moving] ** 2))
+        if on_earth:
+            typical = typical_speed(field)
+        else:
+            typical = np.sqrt(np.mean(speed[moving] ** 2))
         last = longest / float(typical)
         if not field.steady:
             # Long paths can be composed of lags that reach other time steps.
@@ -243,7 +261,10 @@ def typical_speed(field: FlowField) -> float:
     """Return the root mean square of the speed, on maps that on the Earth; 1 in a flow at rest."""
     typical = field.typical
     on_earth = field.projection is not None and "speed" in field.scalars
-    steps = typical.scalars["speed"] if on_earth else typical.speed
+    if on_earth:
+        steps = typical.scalars["speed"]
+    else:
+        steps = typical.speed
     speed = np.asarray(steps)[:, field.valid] / field.speed_scale
     finite = speed[np.isfinite(speed)]
     return float(np.sqrt(np.square(finite).sum() / max(finite.size, 1))) or 1.0
@@ -273,7 +294,8 @@ def drawn_lags(
         # Half precision holds lags near one, in any unit of time.
         first = 2.0 ** np.rint(np.log2(lags[0]))
         return lags / first, unit * first
-    sizes, even = unit[field.valid], small_cell(field)
+    sizes = unit[field.valid]
+    even = small_cell(field)
     if cell is not None:
         even = cell * 2.0 ** np.rint(np.log2(even / cell))
     alike = LEAST_CELL * even <= sizes.min() and sizes.max() <= MOST_CELL * even

@@ -65,12 +65,20 @@ class SliceStore:
         self._nodes = nodes
         self._cache: ByteCache[int, TraceSlices] = ByteCache(CACHE_BYTES, min_count=2)
         if slices is None:
-            self.parameter = parameter if self.streamlines else "time"
+            if self.streamlines:
+                self.parameter = parameter
+            else:
+                self.parameter = "time"
             self.lags, self.unit = drawn_lags(field, self.parameter, longest, cell, first_cells)
             # Where cells differ in size, small ones need many times the lags of large ones.
-            self.long_enough = (longest or longest_path(field)) if np.ptp(self.unit) else np.inf
+            if np.ptp(self.unit):
+                self.long_enough = longest or longest_path(field)
+            else:
+                self.long_enough = np.inf
         else:
-            self.parameter, self.lags, self.unit = slices.parameter, slices.lags, slices.unit
+            self.parameter = slices.parameter
+            self.lags = slices.lags
+            self.unit = slices.unit
 
     @property
     def steps(self) -> int:
@@ -111,7 +119,8 @@ class SliceStore:
             # Only the steps that paths to this time can meet are read.
             reach = float(self.lags[-1] * self.unit.max())
             near = np.flatnonzero(np.abs(self.field.times - self.field.times[step]) <= reach)
-            first, last = max(int(near[0]) - 1, 0), min(int(near[-1]) + 2, self.steps)
+            first = max(int(near[0]) - 1, 0)
+            last = min(int(near[-1]) + 2, self.steps)
             # Every n-th of them where they are many.
             most = max(HELD_BYTES // (STEP_BYTES * self.unit.size), LEAST_HELD)
             apart = -(-(last - first) // most)
@@ -135,7 +144,9 @@ class SliceStore:
         alone = self._nodes is None
         arguments = {**options, "nodes": self._nodes, "longest": self.long_enough}
         follow = partial(trace, field, lags=self.lags, unit=self.unit, progress=alone, **arguments)
-        return _slices.get(self._key(field, options), follow) if alone else follow()
+        if alone:
+            return _slices.get(self._key(field, options), follow)
+        return follow()
 
     def _key(self, field: FlowField, options: dict[str, Any]) -> bytes:
         """Return a hash of all numbers that determine the slices of a field."""
@@ -166,7 +177,9 @@ def chosen_lines(field: FlowField, lines: str = "auto") -> str:
     """
     if lines != "auto":
         return lines
-    return "streamlines" if changing_share(field) > MOST_CHANGING else "pathlines"
+    if changing_share(field) > MOST_CHANGING:
+        return "streamlines"
+    return "pathlines"
 
 
 def changing_share(field: FlowField) -> float:

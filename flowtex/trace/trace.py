@@ -218,7 +218,8 @@ def paths(
     """
     parameter = _parameter(field, parameter)
     begin = np.array(start, dtype=float).reshape(-1, 2)
-    lag_values, number = _checked_lags(lags), field.step_number(step)
+    lag_values = _checked_lags(lags)
+    number = field.step_number(step)
     options = {"direction": 1.0 if forward else -1.0, "tolerance": tolerance}
     if field.triangles is not None:
         return triangle_paths(field, begin, lag_values, step=number, parameter=parameter, **options)
@@ -234,7 +235,10 @@ def _step_numbers(field: FlowField, steps: Any) -> list[int]:
     """Return destination times as indices from 0."""
     if steps is None:
         return list(range(len(field.times)))
-    numbers = [field.step_number(step) for step in steps] if np.iterable(steps) else []
+    if np.iterable(steps):
+        numbers = [field.step_number(step) for step in steps]
+    else:
+        numbers = []
     if not numbers:
         raise FieldError(f"steps is {brief(steps)}; expected numbers of time steps, such as [0]")
     return numbers
@@ -252,7 +256,9 @@ def _threads() -> Iterator[Map]:
 
         def run(work: Callable[[A], B], blocks: Iterable[A], /) -> Iterable[B]:
             blocks = list(blocks)
-            return map(work, blocks) if len(blocks) == 1 else threads.map(work, blocks)
+            if len(blocks) == 1:
+                return map(work, blocks)
+            return threads.map(work, blocks)
 
         yield run
 
@@ -260,7 +266,9 @@ def _threads() -> Iterator[Map]:
 def _parameter(field: FlowField, parameter: str) -> str:
     if parameter not in ("arclength", "time"):
         raise FieldError(f'parameter is {brief(parameter)}; expected "arclength" or "time"')
-    return parameter if field.steady else "time"
+    if field.steady:
+        return parameter
+    return "time"
 
 
 def _checked_lags(lags: ArrayLike) -> Floats:
@@ -283,7 +291,8 @@ def _distance(chosen: Bools) -> Floats:
     """Return distances of nodes from the box of chosen ones, 1 for the farthest line, (J, I)."""
     distances = []
     for axis in (0, 1):
-        lines, at = np.arange(chosen.shape[axis]), np.flatnonzero(chosen.any(axis=1 - axis))
+        lines = np.arange(chosen.shape[axis])
+        at = np.flatnonzero(chosen.any(axis=1 - axis))
         first, last = (at[0], at[-1]) if len(at) else (0, len(lines) - 1)
         beyond = np.maximum(np.maximum(first - lines, lines - last), 0)
         distances.append(beyond / max(beyond.max(), 1))
@@ -323,7 +332,10 @@ class _Tracing:
         self, directions: Sequence[float], landing: Indices | None
     ) -> dict[float, SideSlices]:
         """Follow all paths, by composition where there are landings."""
-        direct = len(self.lags) if landing is None else self._direct_lags(landing)
+        if landing is None:
+            direct = len(self.lags)
+        else:
+            direct = self._direct_lags(landing)
         shape = (len(self.samplers), self.field.valid.size)
         sides = {
             direction: SideSlices(
@@ -347,20 +359,27 @@ class _Tracing:
         if landing.any():
             return int(np.flatnonzero(landing)[0]) + 1
         pace = np.abs(self.rate[:, self.field.valid]).max(axis=-1)
-        typical = float(np.median(pace[pace > 0])) if pace.any() else 1.0
+        if pace.any():
+            typical = float(np.median(pace[pace > 0]))
+        else:
+            typical = 1.0
         return max(int(np.searchsorted(self.lags * typical, DIRECT_CELLS, side="right")), 1)
 
     def _integrate(self, sides: dict[float, SideSlices], direct: int, run: Map) -> None:
         """Fill the first ``direct`` slices."""
         at = np.flatnonzero(self.followed)
-        start, unit = self.nodes.reshape(-1, 2)[at], self.unit.ravel()[at]
+        start = self.nodes.reshape(-1, 2)[at]
+        unit = self.unit.ravel()[at]
 
         def work(job: tuple[int, float, slice]) -> None:
             step, direction, block = job
-            side, nodes = sides[direction], at[block]
-            slices, reach = side.slices[1 : direct + 1, step], side.reach[step]
+            side = sides[direction]
+            nodes = at[block]
+            slices = side.slices[1 : direct + 1, step]
+            reach = side.reach[step]
             options: dict[str, Any] = {"direction": direction, "tolerance": self.tolerance}
-            lags, units = self.lags[:direct], unit[block]
+            lags = self.lags[:direct]
+            units = unit[block]
             result = integrate(self.samplers[step], start[block], lags, units, **options)
             moved = np.clip(result.positions - start[block], -MOST_CELLS, MOST_CELLS)
             target: Indices | slice = nodes
@@ -389,11 +408,18 @@ class _Tracing:
         within: Within | None,
     ) -> tuple[Floats32, Floats, Floats]:
         """Follow some paths, an :data:`flowtex.trace.compose.Integrate`."""
-        moved, covered, ends = np.empty_like(position), lag.copy(), np.empty_like(lag)
+        moved = np.empty_like(position)
+        covered = lag.copy()
+        ends = np.empty_like(lag)
         for number in np.unique(step) if len(self.samplers) > 1 else [0]:
-            group = step == number if len(self.samplers) > 1 else slice(None)
-            start, unit = position[:, group].T.astype(float), lag[group]
-            sampler, options = self.samplers[number], {"tolerance": self.tolerance}
+            if len(self.samplers) > 1:
+                group = step == number
+            else:
+                group = slice(None)
+            start = position[:, group].T.astype(float)
+            unit = lag[group]
+            sampler = self.samplers[number]
+            options = {"tolerance": self.tolerance}
             options["direction"] = direction
             result = integrate(sampler, start, np.ones(1), unit, within=within, **options)
             moved[:, group] = (result.positions[0] - start).T
@@ -462,19 +488,25 @@ def _moved(field: FlowField, step: int, horizon: float) -> tuple[Floats, Bools]:
     The second array marks the particles that are followed to the end, (J, I).
     """
     times = field.times - field.times[step]
-    span, forward = (min(horizon, 0.0), max(horizon, 0.0)), horizon > 0
+    span = (min(horizon, 0.0), max(horizon, 0.0))
+    forward = horizon > 0
     first = max(int(np.searchsorted(times, span[0], side="right")) - 1, 0)
     last = min(int(np.searchsorted(times, span[1])), len(times) - 1)
-    part, valid = field.at_steps(range(first, last + 1)), known_nodes(field, first, last)
+    part = field.at_steps(range(first, last + 1))
+    valid = known_nodes(field, first, last)
     if (valid != field.valid).any():
         part = replace(part, valid=valid)
     if field.steady:
         # In a flow that may vary no particle rests, so that a path that ends has left the domain.
         # The first step is short: the estimated error of a long one may vanish by chance.
-        velocity, times = np.repeat(part.velocity, 2, axis=0), FIRST_STEP * np.sort([0.0, horizon])
+        velocity = np.repeat(part.velocity, 2, axis=0)
+        times = FIRST_STEP * np.sort([0.0, horizon])
         part = replace(part, velocity=velocity, times=times)
         part.__dict__["surface"] = field.surface
-        first = 0 if forward else -1
+        if forward:
+            first = 0
+        else:
+            first = -1
     slices = trace(
         part, lags=[1.0], unit=abs(horizon), parameter="time", steps=[step - first],
         two_sided=forward, compose=False,
@@ -484,7 +516,8 @@ def _moved(field: FlowField, step: int, horizon: float) -> tuple[Floats, Bools]:
     )
     assert moved is not None
     assert reach is not None
-    moved, speed = moved[0, 0].astype(float), np.nan_to_num(field.speed[step])
+    moved = moved[0, 0].astype(float)
+    speed = np.nan_to_num(field.speed[step])
     # Rounding moves a particle at rest in a corner outward.
     moving = (speed > ROUNDED_SPEED * speed.max()) | ((reach[0] > 0) & (not field.steady))
     followed = valid & ~((reach[0] < 1) & moving)

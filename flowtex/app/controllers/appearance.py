@@ -56,7 +56,9 @@ def comparison(name: str) -> dict[str, Any]:
         return {"time": float(name.removeprefix(TIME))}
     if name.startswith(COLOUR_BY):
         return {"scalars": name.removeprefix(COLOUR_BY)}
-    return {} if name.startswith(FILE) else COMPARISONS[name]
+    if name.startswith(FILE):
+        return {}
+    return COMPARISONS[name]
 
 
 def look_shown(look: Look) -> dict[str, Any]:
@@ -74,7 +76,9 @@ class Appearance(Controller):
         super().__init__(context)
         self.beside = beside
         #: The last valid choices of the page, which may send anything.
-        self.theme, self.background, self.compared = "dark", BACKGROUNDS[0], "nothing"
+        self.theme = "dark"
+        self.background = BACKGROUNDS[0]
+        self.compared = "nothing"
         self.state.set(
             theme=self.theme,
             background=self.background,
@@ -102,7 +106,8 @@ class Appearance(Controller):
 
     def take_painter(self) -> None:
         """Draw by the painter that the page requests; the camera stays the same."""
-        painter, element = self.state.get("painter"), self.area
+        painter = self.state.get("painter")
+        element = self.area
         if painter != element.painter and name_among(painter, PAINTERS):
             element.call("paint", painter)  # the page begins again with it
         else:
@@ -110,9 +115,16 @@ class Appearance(Controller):
 
     def take_background(self) -> None:
         """Set the background that the page requests."""
-        theme, choice = self.state.get("theme"), self.state.get("background")
-        self.theme = theme if name_among(theme, THEMES) else self.theme
-        self.background = choice if name_among(choice, BACKGROUNDS) else self.background
+        theme = self.state.get("theme")
+        choice = self.state.get("background")
+        if name_among(theme, THEMES):
+            self.theme = theme
+        else:
+            self.theme = self.theme
+        if name_among(choice, BACKGROUNDS):
+            self.background = choice
+        else:
+            self.background = self.background
         self.state.set(theme=self.theme, background=self.background)
         themed = self.background == BACKGROUNDS[0]
         self.viewport.set_background(self.theme if themed else self.background)
@@ -168,10 +180,14 @@ class Appearance(Controller):
         look = {name: saved[name] for name in LOOK if name in saved}
         if not name_among(look.get("cmap"), CMAPS):
             look.pop("cmap", None)
-        first_name, names = self.first["colour"], (PLAIN, *self.area.scene.scalar_names)
+        first_name = self.first["colour"]
+        names = (PLAIN, *self.area.scene.scalar_names)
         name = saved.get("colour", first_name)
         if not name_among(name, names):
-            name = first_name if first_name in names else SPEED
+            if first_name in names:
+                name = first_name
+            else:
+                name = SPEED
         if name != first_name:
             look = {"clim": None, **look, "scalars": False if name == PLAIN else name}
         return self._first_look.changed(**look)

@@ -36,7 +36,9 @@ class Context:
 
     def __init__(self, state: PageState, area: FlowArea, library: Library) -> None:
         #: The state of the page, the view, and the flows that the page may open.
-        self.state, self.area, self.library = state, area, library
+        self.state = state
+        self.area = area
+        self.library = library
         self.routes = Routes.of(state.server)  #: The files that the page may fetch.
         self.controllers: list[Controller] = []  #: All, in the order in which they were made.
         self.field_changed = Signal()  #: Signal after another flow is shown.
@@ -142,7 +144,8 @@ class FlowOpener(Controller):
 
     async def _announced(self, request: LoadRequest) -> None:
         """Open a flow, with its progress on the page, or the reason why it fails."""
-        name, problem = shortened(request.name, NAME_LENGTH), ""
+        name = shortened(request.name, NAME_LENGTH)
+        problem = ""
 
         async def show_busy() -> None:
             await asyncio.sleep(BUSY_DELAY_S)
@@ -209,4 +212,6 @@ def without_folder(problem: str, name: str) -> str:
         return problem[start + 1 :]
     # Messages about several files name the first.
     path, colon, rest = problem.partition(": ")
-    return f"{Path(path).name}{colon}{rest}" if Path(path).is_absolute() else problem
+    if Path(path).is_absolute():
+        return f"{Path(path).name}{colon}{rest}"
+    return problem

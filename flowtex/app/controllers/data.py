@@ -145,7 +145,8 @@ class Data(FlowOpener):
     def _show(self, flow: LoadedFlow, request: LoadRequest) -> None:
         """Replace the flow by another one; if that fails, it stays."""
         before = self._current, self._goal
-        new, old = flow.choice, self.choice
+        new = flow.choice
+        old = self.choice
         # A link shows the same whatever was shown before.
         same = not request.is_link and self._has_same_velocity(flow.name, new, flow.field)
         keep = same and (new.block, _axis(new.plane)) == (old.block, _axis(old.plane))
@@ -171,7 +172,8 @@ class Data(FlowOpener):
         self.state.send(busy="", **values)
 
     def _requested(self) -> Choice:
-        options, get = self._options(), self.state.get
+        options = self._options()
+        get = self.state.get
         choices_of = {"block": "blocks", "vectors": "vectors_choices", "axis": "axes"}
         block, vectors, axis = (
             value if name_among(value := get(name), options[choices]) else options[name]
@@ -195,8 +197,12 @@ class Data(FlowOpener):
         return self._current.source.part(self.choice.block or None)
 
     def _options(self) -> dict[str, Any]:
-        source, part = self._current.source, self._part
-        axis = _axis(self.choice.plane) if part.planes else ""
+        source = self._current.source
+        part = self._part
+        if part.planes:
+            axis = _axis(self.choice.plane)
+        else:
+            axis = ""
         count = part.planes.get(axis, 0)
         field = self.viewport.field
         return {
@@ -251,8 +257,13 @@ class FileBeside(FlowOpener):
     @property
     def name(self) -> str:
         """Name of the file in the second pane; empty without one."""
-        shown = self._flow if "field" in self.viewport.differences else None
-        return "" if shown is None else shown.name
+        if "field" in self.viewport.differences:
+            shown = self._flow
+        else:
+            shown = None
+        if shown is None:
+            return ""
+        return shown.name
 
     def open(self, name: str) -> None:
         """Open a file for the second pane, instead of the one being opened."""

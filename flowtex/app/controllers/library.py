@@ -115,7 +115,10 @@ class Library:
         self.typed = typed
         self._named = dict(openers)
         self._looks = dict(looks or {})
-        self._folder = None if folder is None else checked_source(folder)
+        if folder is None:
+            self._folder = None
+        else:
+            self._folder = checked_source(folder)
         #: Flows that a branch has for itself, and all that could be opened when last listed.
         self._own: dict[str, Opener] = {}
         self._openers: dict[str, Opener] = {}
@@ -166,20 +169,32 @@ class Library:
                 return cls({}, path)
         openers: dict[str, Opener] = {}
         for flow in flows:
-            items = flow if isinstance(flow, (list, tuple)) else (flow,)
+            if isinstance(flow, (list, tuple)):
+                items = flow
+            else:
+                items = (flow,)
             if items and all(isinstance(item, (str, Path)) for item in items):
                 paths = tuple(map(Path, items))
-                name = paths[0].name if len(paths) == 1 else common_name(paths)
+                if len(paths) == 1:
+                    name = paths[0].name
+                else:
+                    name = common_name(paths)
                 openers[_free(name, openers)] = _Files(paths)
                 continue
-            source = flow if isinstance(flow, FlowSource) else _source_of(flow, options)
+            if isinstance(flow, FlowSource):
+                source = flow
+            else:
+                source = _source_of(flow, options)
             openers[_free(source.name or "flow", openers)] = _constant(source)
         return cls(openers, None if folder is None else Path(folder))
 
     @property
     def names(self) -> tuple[str, ...]:
         """Names of all flows; the folder is searched again."""
-        files = [] if self._folder is None else find_files(self._folder)
+        if self._folder is None:
+            files = []
+        else:
+            files = find_files(self._folder)
         found = {name: _Files((path,)) for name, path in files}
         self._openers = {**self._named, **found, **self._own}
         return tuple(self._openers)
@@ -223,17 +238,19 @@ class Library:
 
         With ``nearest`` only those parts of it are used that the file has.
         """
-        source, (block, vectors, plane) = (
-            self.source(name),
-            (choice.block, choice.vectors, choice.plane),
-        )
+        source = self.source(name)
+        block = choice.block
+        vectors = choice.vectors
+        plane = choice.plane
         if nearest and block not in source.blocks:
             block = ""
         block = block or next(iter(source.blocks), "")
         part = source.part(block or None)
         if nearest:
-            vectors = vectors if vectors in part.vectors else ""
-            plane = "" if part.plane_number(plane) is None else plane
+            if vectors not in part.vectors:
+                vectors = ""
+            if part.plane_number(plane) is None:
+                plane = ""
         vectors = vectors or next(iter(part.vectors), "")
         return Choice(vectors, plane or part.default_plane, block)
 
@@ -301,11 +318,14 @@ class _Line:
 
 
 def _identity(opener: Opener) -> Identity:
-    return opener.identity if isinstance(opener, _Files) else ()
+    if isinstance(opener, _Files):
+        return opener.identity
+    return ()
 
 
 def _free(name: str, taken: Iterable[str]) -> str:
-    free, number = name, 1
+    free = name
+    number = 1
     while free in taken:
         number += 1
         free = f"{name} ({number})"

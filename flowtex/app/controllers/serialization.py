@@ -76,7 +76,8 @@ def to_link(state: State, first: State | None = None) -> str:
 
     It leaves out defaults, unless a new page shows another value ``first``.
     """
-    first, defaults = first or {}, _defaults_of(state)
+    first = first or {}
+    defaults = _defaults_of(state)
     first_settings = first.get("settings") or {}
     pairs = [
         (name, form.write(state[name]))
@@ -99,7 +100,10 @@ def to_link(state: State, first: State | None = None) -> str:
 
 def from_link(text: str, faults: list[str] | None = None) -> dict[str, Any]:
     """Return the checked values of a link; ``faults`` gets a sentence for each invalid part."""
-    messages: list[str] = [] if faults is None else faults
+    if faults is None:
+        messages: list[str] = []
+    else:
+        messages = faults
     state: dict[str, Any] = {}
     for name, value in _pairs(text, messages):
         try:
@@ -195,7 +199,8 @@ def to_python(
     lines = ["import flowtex", "", f"picture = {_render(state, source, size)}"]
     beside = comparison(split)
     if split.startswith(FILE):
-        beside, source = {"file": split.removeprefix(FILE), "time": None}, source_beside
+        beside = {"file": split.removeprefix(FILE), "time": None}
+        source = source_beside
     if beside:
         settings = {n: value for n, value in beside.items() if n in TABLE}
         other = {**state, **beside, "settings": {**(state.get("settings") or {}), **settings}}
@@ -210,7 +215,8 @@ def _render(state: State, source: str | None, size: tuple[int, int]) -> str:
     if source is None:
         if not state.get("file"):
             raise FieldError("the state has no file; pass the expression that makes its field")
-        source, values = _literal(state["file"]), _part(state)
+        source = _literal(state["file"])
+        values = _part(state)
     state = {**DEFAULTS, **{name: value for name, value in state.items() if value is not None}}
     defaults = _defaults_of(state)
     values |= {"size": size, "scalars": state["colour"] != PLAIN and state["colour"]}
@@ -243,4 +249,6 @@ def _part(state: State) -> dict[str, Any]:
 def _literal(value: object) -> str:
     text = repr(value)
     plain = isinstance(value, str) and text[0] == "'" and '"' not in text and "\\" not in text
-    return f'"{text[1:-1]}"' if plain else text
+    if plain:
+        return f'"{text[1:-1]}"'
+    return text

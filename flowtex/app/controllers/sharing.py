@@ -77,7 +77,9 @@ class Sharing(Controller):
     ) -> None:
         super().__init__(context)
         self.downloads = Downloads(context.routes)
-        self._data, self._beside, self._restore_state = data, beside, restore_state
+        self._data = data
+        self._beside = beside
+        self._restore_state = restore_state
         self._first = first
         self._task: asyncio.Task[None] | None = None
         self.state.set(
@@ -115,7 +117,8 @@ class Sharing(Controller):
         self.state.set(out_progress=None)
 
     def _new_job(self) -> Job:
-        get, kind = self.state.get, self.state.get("out_format")
+        get = self.state.get
+        kind = self.state.get("out_format")
         if kind not in FORMATS:
             raise ExportError(f"the format is {kind!r}; expected {', '.join(FORMATS)}")
         path = self.downloads.reserve(f"{self.viewport.field.name or 'flow'}.{kind.lower()}")
@@ -174,7 +177,8 @@ class Sharing(Controller):
 
     def show_state(self) -> None:
         """Show the link and the lines of Python on the page."""
-        state, beside = self.present_state(), self._beside.name
+        state = self.present_state()
+        beside = self._beside.name
         is_file = self.context.library.is_file
         self.state.set(
             link="#" + to_link(state, self._first),
@@ -229,14 +233,20 @@ class Job:
         fps: float = 30.0,
         quality: int = DEFAULT_QUALITY,
     ) -> None:
-        self.path, self.done = path, False
+        self.path = path
+        self.done = False
         suffix = path.suffix.lower()
         if suffix == ".mp4":
             size = (max(size[0] // 2 * 2, 2), max(size[1] // 2 * 2, 2))
         _check(size, density, MOST_PIXELS if suffix == ".png" else MOST_MOVIE_PIXELS)
-        self._viewport, self._size, self._quality = viewport, size, quality
-        self._supersampling, self._density = supersampling, density
-        self._annotations, self._gap, self._rows = annotations, 0, slice(0, size[1])
+        self._viewport = viewport
+        self._size = size
+        self._quality = quality
+        self._supersampling = supersampling
+        self._density = density
+        self._annotations = annotations
+        self._gap = 0
+        self._rows = slice(0, size[1])
         self.frames: FrameTimes | None = None
         self._report: Callable[[float], None] = lambda share: None
         if suffix != ".png":
@@ -291,8 +301,12 @@ class Job:
             await asyncio.wrap_future(self._pool.submit(writer.close))
 
     def _prepare(self) -> None:
-        panes, density = self._viewport.panes, self._density
-        self._gap = max(round(GAP_PX * density), 1) if len(panes) > 1 else 0
+        panes = self._viewport.panes
+        density = self._density
+        if len(panes) > 1:
+            self._gap = max(round(GAP_PX * density), 1)
+        else:
+            self._gap = 0
         self._viewport.longest_side = TILE_PX
         for pane in panes:
             pane.density = density * self._supersampling
@@ -305,7 +319,9 @@ class Job:
         """Draw a picture, which is ``share`` of the whole work, after the share ``before``."""
         ground = np.rint(255 * np.array(rgb(self._viewport.background)))
         canvas = np.full((*self._size[::-1], 3), ground, np.uint8)
-        rows, panes, times = canvas[self._rows], self._viewport.panes, self._supersampling
+        rows = canvas[self._rows]
+        panes = self._viewport.panes
+        times = self._supersampling
         rows[:] = LINE_GREY
         if self._size[0] < len(panes) + self._gap:
             shown = f"{self._size[0]} x {len(rows)}"

@@ -200,7 +200,10 @@ def plain_name(name: str) -> str:
     if DEVICE.match(plain):
         plain = f"_{plain}"
     stem, dot, ending = plain.rpartition(".")
-    ending = _cut(ending, ENDING_BYTES) if stem else ""
+    if stem:
+        ending = _cut(ending, ENDING_BYTES)
+    else:
+        ending = ""
     return f"{_cut(stem or plain, NAME_BYTES)}{dot if ending else ''}{ending}" or "flow"
 
 

@@ -73,7 +73,9 @@ def number(value: object, low: float = -math.inf, high: float = math.inf) -> flo
 def clipped(value: object, default: float, low: float, high: float) -> float:
     """Return a number clipped to limits; the default if the value is not a number."""
     checked = number(value)
-    return default if checked is None else min(max(checked, low), high)
+    if checked is None:
+        return default
+    return min(max(checked, low), high)
 
 
 def name_among(value: object, names: Container[str]) -> TypeGuard[str]:
@@ -83,9 +85,13 @@ def name_among(value: object, names: Container[str]) -> TypeGuard[str]:
 
 def mapping(value: object) -> Mapping[str, Any]:
     """Return a mapping, an empty one for anything else."""
-    return value if isinstance(value, Mapping) else {}
+    if isinstance(value, Mapping):
+        return value
+    return {}
 
 
 def shortened(text: str, most: int = MESSAGE_LENGTH) -> str:
     """Return a text, cut at its end if it is long."""
-    return text if len(text) <= most else f"{text[: most - 1]}…"
+    if len(text) <= most:
+        return text
+    return f"{text[: most - 1]}…"

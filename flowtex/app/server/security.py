@@ -184,7 +184,10 @@ class LimitedServer:
     def __init__(
         self, application: web.Application, *, most: int | None = None, **options: Any
     ) -> None:
-        self._most = usual_most() if most is None else most
+        if most is None:
+            self._most = usual_most()
+        else:
+            self._most = most
         # The program handles signals, not the web server.
         self._runner = web.AppRunner(
             application,
@@ -206,7 +209,9 @@ class LimitedServer:
         else:
             self._server = await create(self._admit, sock=endpoint, backlog=BACKLOG)
         name = self._server.sockets[0].getsockname()
-        return int(name[1]) if isinstance(name, tuple) else 0
+        if isinstance(name, tuple):
+            return int(name[1])
+        return 0
 
     async def stop(self) -> None:
         """Listen no more, and end all connections."""
@@ -229,7 +234,9 @@ class LimitedServer:
             return _Refusal()
         transports = [connection.transport for connection in server.connections]
         present = sum(t is not None and not t.is_closing() for t in transports)
-        return server() if present < self._most else _Refusal()
+        if present < self._most:
+            return server()
+        return _Refusal()
 
 
 class _Refusal(asyncio.Protocol):
@@ -244,5 +251,7 @@ def usual_most() -> int:
         import resource
 
         files = resource.getrlimit(resource.RLIMIT_NOFILE)[0]
-        return max(1, min(CONNECTIONS, files // 2)) if files > 0 else CONNECTIONS
+        if files > 0:
+            return max(1, min(CONNECTIONS, files // 2))
+        return CONNECTIONS
     return CONNECTIONS

@@ -165,7 +165,8 @@ def _secret_and_token(body: bytes) -> tuple[str, str | None]:
     """Return the secret and token that a door sends; a ValueError without valid texts."""
     try:
         request = json.loads(body)
-        secret, token = request["secret"], request.get("session")
+        secret = request["secret"]
+        token = request.get("session")
     except (RecursionError, LookupError, TypeError, AttributeError):
         raise ValueError(MALFORMED) from None
     if not isinstance(secret, str) or not isinstance(token, str | None):
@@ -232,7 +233,8 @@ async def serve_until_ended(
     ``listen`` returns the port; ``endpoint`` is host, port and the rest of the address.
     """
     host, port, rest = endpoint
-    main, loop = asyncio.current_task(), asyncio.get_running_loop()
+    main = asyncio.current_task()
+    loop = asyncio.get_running_loop()
     received: list[int] = []
 
     def end(number: int) -> None:
@@ -268,8 +270,12 @@ async def serve_until_ended(
 
 def _host_name(host: str) -> str:
     if host in ("0.0.0.0", "::", ""):
-        return os.uname().nodename if hasattr(os, "uname") else "localhost"
-    return f"[{host}]" if ":" in host else host
+        if hasattr(os, "uname"):
+            return os.uname().nodename
+        return "localhost"
+    if ":" in host:
+        return f"[{host}]"
+    return host
 
 
 def _redirection(address: str, folder: Path) -> str:
@@ -292,15 +298,21 @@ class RepeatFilter(logging.Filter):
 
     def filter(self, record: logging.LogRecord) -> bool:
         """Return whether a record is written; cut it, and keep tracebacks of defects only."""
-        kind = record.exc_info[0] if record.exc_info else None
-        place, now = (record.pathname, record.lineno, kind), self._clock()
+        if record.exc_info:
+            kind = record.exc_info[0]
+        else:
+            kind = None
+        place = (record.pathname, record.lineno, kind)
+        now = self._clock()
         began, count = self._windows.get(place, (now, 0))
         if now - began >= WINDOW_S:
-            began, count = now, 0
+            began = now
+            count = 0
         self._windows[place] = began, count + 1
         if count >= MOST_RECORDS:
             return False
-        record.msg, record.args = _cut(record.getMessage()), ()
+        record.msg = _cut(record.getMessage())
+        record.args = ()
         if kind and issubclass(kind, OTHERS_FAULTS):
             record.exc_info = record.exc_text = None
         elif record.exc_info:
@@ -310,7 +322,9 @@ class RepeatFilter(logging.Filter):
 
 def _cut(text: str) -> str:
     half = MESSAGE_LENGTH // 2
-    return text if len(text) <= MESSAGE_LENGTH else f"{text[:half]} … {text[-half:]}"
+    if len(text) <= MESSAGE_LENGTH:
+        return text
+    return f"{text[:half]} … {text[-half:]}"
 
 
 @contextmanager

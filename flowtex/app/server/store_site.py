@@ -45,7 +45,10 @@ class ServedStore:
     """The objects of a pyramid by their names."""
 
     def __init__(self, place: str | Path) -> None:
-        self._folder = None if is_remote(place) else Path(place_text(place))
+        if is_remote(place):
+            self._folder = None
+        else:
+            self._folder = Path(place_text(place))
         levels = Levels(place)
         self.run = secrets.token_hex(4)  #: A word that is unique to this run.
         self._origin = objects_at(levels.place)
@@ -67,7 +70,8 @@ class ServedStore:
     async def get(self, name: str) -> bytes:
         """Return an object; a LookupError if it does not exist, a ReadFault when reading fails."""
         array, _, rest = name.partition("/c/")
-        words, counts = rest.split("/"), self._counts.get(array, ())
+        words = rest.split("/")
+        counts = self._counts.get(array, ())
         is_chunk = len(words) == len(counts) and all(
             _NUMBER.fullmatch(word) and int(word) < count
             for word, count in zip(words, counts, strict=True)

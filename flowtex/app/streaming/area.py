@@ -103,7 +103,8 @@ class FlowArea(AppearanceAttributes):
         #: Names of the panes, where they differ from those of their fields.
         self.names: tuple[str, ...] = ()
         #: Signals with the error of a user's action, and after a change of the painter.
-        self.failed, self.painter_changed = Signal(), Signal()
+        self.failed = Signal()
+        self.painter_changed = Signal()
         self.parameter_asked = Signal()
         self.ref = self.state.key("element")
         self._routes = Routes.of(server)
@@ -139,7 +140,10 @@ class FlowArea(AppearanceAttributes):
 
     @field.setter
     def field(self, mesh: Any) -> None:
-        reading = FieldOptions() if isinstance(mesh, FlowField) else self._reading
+        if isinstance(mesh, FlowField):
+            reading = FieldOptions()
+        else:
+            reading = self._reading
         self.show(read_field(mesh, reading), keep_view=True, keep_range=True, keep_time=True)
 
     def ui(self, **attributes: Any) -> Any:
@@ -241,8 +245,12 @@ class FlowArea(AppearanceAttributes):
 
     def begin(self, painter: object) -> Header:
         """Return all values that a new page needs, or a page with another painter."""
-        self.painter = painter if name_among(painter, PAINTERS) else PAINTERS[0]
-        self.stream.paused, self.stream.fits = self.painter == "browser", False
+        if name_among(painter, PAINTERS):
+            self.painter = painter
+        else:
+            self.painter = PAINTERS[0]
+        self.stream.paused = self.painter == "browser"
+        self.stream.fits = False
         self.painter_changed.emit()
         self.stream.reset()
         self._sent = self._present()
@@ -276,7 +284,8 @@ class FlowArea(AppearanceAttributes):
 
     def repeat(self) -> None:
         """Send the current values to the page again, to replace invalid ones."""
-        self._handed, self._sent = (), {}
+        self._handed = ()
+        self._sent = {}
         self.follow()
 
     def call(self, method: str, *values: object) -> None:
@@ -302,8 +311,10 @@ class FlowArea(AppearanceAttributes):
         )
 
     def _hand_over(self) -> list[Header]:
-        viewport, present = self.viewport, self._present()
-        panes, changes = viewport.panes, viewport.differences
+        viewport = self.viewport
+        present = self._present()
+        panes = viewport.panes
+        changes = viewport.differences
         for scene in self._scenes[len(panes) :]:
             scene.close()
         self._scenes = self._scenes[: len(panes)]
@@ -326,7 +337,10 @@ class FlowArea(AppearanceAttributes):
     @contextmanager
     def _changed_by(self, page: object) -> Iterator[None]:
         """Send changes by one page to all others."""
-        self._by = page if isinstance(page, str) else ""
+        if isinstance(page, str):
+            self._by = page
+        else:
+            self._by = ""
         try:
             yield
         except FieldError as error:
@@ -383,7 +397,8 @@ class FlowArea(AppearanceAttributes):
         del place  # which all of them share
         if not (isinstance(pair, list) and len(pair) == 2):
             return
-        name, value = pair[0], number(pair[1], -1e300, 1e300)
+        name = pair[0]
+        value = number(pair[1], -1e300, 1e300)
         if isinstance(name, str) and name.startswith(PREFIX) and value is not None:
             self.parameter_asked.emit(name.removeprefix(PREFIX), value)
         elif name_among(pair[0], TABLE):
@@ -427,6 +442,9 @@ def _appearance(pane: FlowHandle) -> tuple[object, ...]:
     scene = pane.scene
     settings = scene.settings
     built = [getattr(settings, row.name) for row in TABLE.values() if row.affects != "uniform"]
-    baked = () if settings.noise == "procedural" else (settings.seed, settings.tiles)
+    if settings.noise == "procedural":
+        baked = ()
+    else:
+        baked = (settings.seed, settings.tiles)
     look = scene.appearance, scene.scalar_limits
     return (*built, *baked, scene.field, *look, id(scene.image))

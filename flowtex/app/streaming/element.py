@@ -46,7 +46,8 @@ class HandedScene:
     """A scene for the page: its header, and files of its parts at its own address."""
 
     def __init__(self, routes: Routes) -> None:
-        self._routes, self._stem = routes, ""
+        self._routes = routes
+        self._stem = ""
         self._source: TileSource | None = None
         #: Number of requests for steps of the whole.
         self._asked = 0
@@ -71,21 +72,30 @@ class HandedScene:
     async def _content(self, source: TileSource, name: str) -> Content:
         place, *numbers = name.split(".")
         steps = [int(number) for number in numbers]
-        kind = place if place in (*PART_GROUPS, *MARK_PARTS.values()) else ""
+        if place in (*PART_GROUPS, *MARK_PARTS.values()):
+            kind = place
+        else:
+            kind = ""
         key = None
         if place != WHOLE and not kind:
             level, row, column = map(int, place.split(","))
             key = TileKey(level, row, column)
         if not all(0 <= step < source.scene.steps for step in steps):
             raise LookupError(name)
-        is_over = self._next_request() if place == WHOLE and steps else _never
+        if place == WHOLE and steps:
+            is_over = self._next_request()
+        else:
+            is_over = _never
         try:
             parts = await asyncio.wrap_future(source.ask(key, steps, is_over, kind))
         except Stopped:  # neither the scene nor the step is shown any more
             parts = {}
         except Exception as error:
             # Coarser tiles replace it.
-            part = "the surface" if key is None else f"tile {tuple(key)}"
+            if key is None:
+                part = "the surface"
+            else:
+                part = f"tile {tuple(key)}"
             _log.warning("%s could not be made: %s", part, error)
             raise FileNotFoundError(name) from error
         # Packing takes a while, and the loop has other pages to serve.
@@ -111,7 +121,8 @@ class Player:
 
     def __init__(self, viewport: Viewport, stream: FrameStream) -> None:
         #: Signals after a change of the time shown, and after the animation starts or stops.
-        self.time_changed, self.playing_changed = Signal(), Signal()
+        self.time_changed = Signal()
+        self.playing_changed = Signal()
         #: Name of the page that requested the time shown; empty for a request of the server.
         self.page = ""
         self._viewport = viewport
@@ -138,7 +149,9 @@ class Player:
     @property
     def time(self) -> float:
         """The time shown, or the requested one that is being read."""
-        return self._viewport.handle.time if self._requested is None else self._requested
+        if self._requested is None:
+            return self._viewport.handle.time
+        return self._requested
 
     @property
     def is_reading(self) -> bool:
@@ -161,7 +174,8 @@ class Player:
 
     async def _read(self) -> None:
         while (time := self._requested) is not None:
-            fault, field = None, self._viewport.field
+            fault = None
+            field = self._viewport.field
             try:
                 await asyncio.to_thread(self._viewport.trace, time)
             except FieldError as error:
@@ -186,7 +200,8 @@ class Player:
 
     def _stop(self, error: FieldError) -> None:
         """Stop at the time shown, as another one cannot be read."""
-        self.playing, self.page = False, ""
+        self.playing = False
+        self.page = ""
         self._stream.data_failed.emit(error)
         self.time_changed.emit()
         self._stream.changed()

@@ -33,14 +33,18 @@ class FrameClock:
     """The pictures on their way to a page; ``now`` returns seconds."""
 
     def __init__(self, now: Callable[[], float] = time.perf_counter) -> None:
-        self.now, self._count, self._acknowledged = now, 0, asyncio.Event()
+        self.now = now
+        self._count = 0
+        self._acknowledged = asyncio.Event()
         self.restart()
 
     def restart(self) -> None:
         """Forget all pictures, as for a new page."""
         self.share = FIRST_SHARE  #: Share of its pixels that the next picture in motion has.
         self._on_way: dict[int, tuple[float, bool]] = {}
-        self._page, self._fastest, self._before = "", 0.0, 0.0
+        self._page = ""
+        self._fastest = 0.0
+        self._before = 0.0
         self._acknowledged.set()
 
     def sent(self, *, moving: bool) -> int:
@@ -58,9 +62,12 @@ class FrameClock:
             return
         delay = shown - sent
         if page != self._page or delay < self._fastest:
-            self._page, self._fastest, self._before = page, delay, delay
+            self._page = page
+            self._fastest = delay
+            self._before = delay
         # One that is late alone, as in a browser that is busy, is not the connection's.
-        late, self._before = min(delay, self._before) - self._fastest, delay
+        late = min(delay, self._before) - self._fastest
+        self._before = delay
         factor = max(SLACK_S / max(late, SLACK_S / MOST_FACTOR), LEAST_FACTOR)
         self.share = min(max(self.share * factor, LEAST_SHARE), 1.0)
         if self.share == LEAST_SHARE:

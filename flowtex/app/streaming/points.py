@@ -47,7 +47,8 @@ class PointReader:
         panes = self._viewport.panes
         if type(pane) is not int or pane not in range(len(panes)):  # 0.0 is in a range as well
             return None
-        shown, request = panes[pane], mapping(at)
+        shown = panes[pane]
+        request = mapping(at)
         index = self._index(pane, request)
         if index is None:
             return None
@@ -55,10 +56,12 @@ class PointReader:
         if not request.get("path"):
             point = values_of(values_at(shown.field, index, time), index)
             return {"point": point | self._mark(shown, point["position"])}
-        scene, clock = shown.scene.copy(), self._viewport.clock
+        scene = shown.scene.copy()
+        clock = self._viewport.clock
         if time != scene.time:
             scene.time = time
-        camera, size = self._viewport.camera, self._viewport.pane_size
+        camera = self._viewport.camera
+        size = self._viewport.pane_size
 
         def work() -> Probe | None:
             try:
@@ -84,7 +87,9 @@ class PointReader:
             for point in scene.structure.points(scene.step)[:count]
         ]
         distance, kind = min(marks, default=(np.inf, ""))
-        return {"mark": kind} if distance < reach else {}
+        if distance < reach:
+            return {"mark": kind}
+        return {}
 
     def _index(self, pane_number: int, request: Mapping[str, Any]) -> tuple[float, float] | None:
         pane = self._viewport.panes[pane_number]
@@ -95,17 +100,26 @@ class PointReader:
             point = self._viewport.surface_point(x, y, pane_number)
             # Points on a flat surface are exact, so its border is as drawn.
             flat = pane.scene.whole.surface.frame is not None
-            tolerance = FLAT_TOLERANCE if flat else CURVED_TOLERANCE
-            return None if point is None else locate(field, point, tolerance=tolerance)
+            if flat:
+                tolerance = FLAT_TOLERANCE
+            else:
+                tolerance = CURVED_TOLERANCE
+            if point is None:
+                return None
+            return locate(field, point, tolerance=tolerance)
         if field.triangles is not None:
             position = _numbers(request.get("position"), 3)
-            return None if position is None else locate(field, position, tolerance=np.inf)
+            if position is None:
+                return None
+            return locate(field, position, tolerance=np.inf)
         index = _numbers(request.get("index"), 2)
         if index is None:
             return None
         last_j, last_i = field.surface.last_index
         i, j = index
-        return (j, i) if 0 <= i <= last_i and 0 <= j <= last_j else None
+        if 0 <= i <= last_i and 0 <= j <= last_j:
+            return (j, i)
+        return None
 
     def close(self) -> None:
         """Stop reading."""
@@ -115,20 +129,30 @@ class PointReader:
 def _time_of(field: FlowField, asked: object, present: float) -> float:
     """Return the time that is asked for, or the present one if the field has none such."""
     time = number(asked, *map(float, field.times[[0, -1]]))
-    return present if time is None or field.steady else time
+    if time is None or field.steady:
+        return present
+    return time
 
 
 def _numbers(value: object, count: int) -> list[float] | None:
-    items = [number(v) for v in value] if isinstance(value, (list, tuple)) else []
+    if isinstance(value, (list, tuple)):
+        items = [number(v) for v in value]
+    else:
+        items = []
     numbers = [v for v in items if v is not None]
-    return numbers if len(numbers) == len(items) == count else None
+    if len(numbers) == len(items) == count:
+        return numbers
+    return None
 
 
 def values_of(point: PointValues, index: tuple[float, float]) -> Header:
     """Return a point for the client."""
     j, i = index
     values = {SPEED: point.speed, **point.scalars}
-    on_earth = {"eastNorth": [point.eastward, point.northward]} if point.lonlat else {}
+    if point.lonlat:
+        on_earth = {"eastNorth": [point.eastward, point.northward]}
+    else:
+        on_earth = {}
     return {
         **on_earth,
         "position": point.position.tolist(),
@@ -146,7 +170,8 @@ def path_of(found: Probe, index: tuple[float, float], field: FlowField) -> Heade
     # Far beyond the samples the slices are too coarse to show, and no picture needs them.
     reach = float(np.fmax(np.abs(found.lags).max(), FEWEST_SAMPLES * abs(found.step)))
     near = np.abs(found.path_lags) <= PATH_LENGTH * reach
-    path, path_lags = found.path[near], found.path_lags[near]
+    path = found.path[near]
+    path_lags = found.path_lags[near]
     inside = (path_lags <= found.lags[0]) & (path_lags >= found.lags[-1])
     lags = np.concatenate([path_lags[inside], found.lags])
     _, order = np.unique(-lags, return_index=True)
@@ -162,7 +187,8 @@ def path_of(found: Probe, index: tuple[float, float], field: FlowField) -> Heade
 
 
 def _in_surface(found: Probe, field: FlowField) -> Floats:
-    point, n = found.field_values, int(np.abs(found.path_lags).argmin())
+    point = found.field_values
+    n = int(np.abs(found.path_lags).argmin())
     ends = found.path[max(n - 1, 0)], found.path[min(n + 1, len(found.path) - 1)]
     along = ends[1] - ends[0]
     size = float(np.linalg.norm(along))

@@ -77,9 +77,13 @@ class ViewPainter:
 
         ``share`` is that of the pixels that there is time for on the way to the page.
         """
-        panes, (width, height) = self._viewport.panes, self._viewport.pane_size
+        panes = self._viewport.panes
+        (width, height) = self._viewport.pane_size
         pixels = width * height
-        most = min(DRAFT_PIXELS / len(panes), pixels) if self.slow else pixels
+        if self.slow:
+            most = min(DRAFT_PIXELS / len(panes), pixels)
+        else:
+            most = pixels
         scale = math.sqrt(share * most / pixels)
         self.complete = scale == 1.0
         if not self.complete:
@@ -92,7 +96,8 @@ class ViewPainter:
         chosen = pane.settings.samples
         if not self.slow or chosen <= DRAFT_SAMPLES:
             return self._viewport.draw(width, height, pane=pane)
-        self.complete, self.drafting = False, True
+        self.complete = False
+        self.drafting = True
         pane.settings.samples = DRAFT_SAMPLES
         try:
             return self._viewport.draw(width, height, pane=pane)
@@ -102,10 +107,14 @@ class ViewPainter:
 
     def full(self, draft: Bytes) -> Generator[Bytes, None, None]:
         """Draw the full picture over a quick one; yield it after each tile, to cancel there."""
-        count, (width, height) = len(self._viewport.panes), self._viewport.pane_size
+        count = len(self._viewport.panes)
+        (width, height) = self._viewport.pane_size
         size = count * (width + GAP_PX) - GAP_PX, height
         canvas = np.array(Image.fromarray(draft).resize(size, Image.Resampling.BILINEAR))
-        side = TILE_PX if self.slow else max(width, height)
+        if self.slow:
+            side = TILE_PX
+        else:
+            side = max(width, height)
         for _ in self._viewport.draw_tiles(canvas, GAP_PX, side=side):
             yield canvas
 
@@ -123,7 +132,8 @@ class FrameStream(AreaAdapter):
         self.watched: Callable[[], bool] = lambda: True
         #: Signal with a FieldError when a part of the data, such as a later step, cannot be read.
         self.data_failed = Signal()
-        self.painter, self.clock = ViewPainter(viewport), FrameClock()
+        self.painter = ViewPainter(viewport)
+        self.clock = FrameClock()
         self._viewport = viewport
         self._wake = asyncio.Event()
         self._sized = self._is_new = False
@@ -136,7 +146,8 @@ class FrameStream(AreaAdapter):
         del origin
         if self._closed:
             return
-        sides, (least, most) = mapping(size), SIDES_PX
+        sides = mapping(size)
+        (least, most) = SIDES_PX
         ratio = clipped(sides.get("p"), 1.0, *PIXEL_RATIOS)
         width, height = (
             min(max(clipped(sides.get(side), least, least, most) * ratio, least), most)
@@ -148,13 +159,15 @@ class FrameStream(AreaAdapter):
             self._viewport.resize(*new, fits=self.fits)
         if self._is_new:  # it did not listen before it sent its size
             self.clock.restart()
-        self._sized, self._is_new = True, False
+        self._sized = True
+        self._is_new = False
         self.changed()
 
     def on_interaction(self, origin: object, event: object) -> None:
         """Take the acknowledgement of a picture; the page moves the camera itself."""
         shown = mapping(event)
-        picture, seconds = number(shown.get("number")), number(shown.get("seconds"))
+        picture = number(shown.get("number"))
+        seconds = number(shown.get("seconds"))
         if picture is not None and seconds is not None:
             self.clock.acknowledge(str(origin), int(picture), seconds)
 
@@ -225,7 +238,8 @@ class FrameStream(AreaAdapter):
 
     async def _quick(self) -> Bytes:
         self._wake.clear()
-        started, share = self.clock.now(), self.clock.share
+        started = self.clock.now()
+        share = self.clock.share
         picture = self.painter.quick(share)
         quality = round(LEAST_QUALITY + share * (MOTION_QUALITY - LEAST_QUALITY))
         await self._send(picture, quality, moving=True)
@@ -241,7 +255,8 @@ class FrameStream(AreaAdapter):
         return False
 
     async def _full(self, draft: Bytes) -> None:
-        looked, picture = self.clock.now(), draft
+        looked = self.clock.now()
+        picture = draft
         for picture in () if self.painter.complete else self.painter.full(draft):
             await asyncio.sleep(0)
             if self._wake.is_set():
@@ -255,7 +270,8 @@ class FrameStream(AreaAdapter):
 
     async def _send(self, picture: Bytes, quality: int, *, moving: bool = False) -> None:
         """Send a picture once few are on their way, and one at rest if nothing has changed then."""
-        (height, width), sharp = picture.shape[:2], quality == REST_QUALITY
+        (height, width) = picture.shape[:2]
+        sharp = quality == REST_QUALITY
         loop = asyncio.get_running_loop()
         content = await loop.run_in_executor(None, encode, picture, quality)
         await self.clock.until(0 if sharp else MOST_ON_WAY - 1)
@@ -269,6 +285,9 @@ class FrameStream(AreaAdapter):
 def encode(pixels: Bytes, quality: int) -> bytes:
     """Return a picture as JPEG; at rest without halving the resolution of the colours."""
     buffer = io.BytesIO()
-    subsampling = 0 if quality >= REST_QUALITY else 2
+    if quality >= REST_QUALITY:
+        subsampling = 0
+    else:
+        subsampling = 2
     Image.fromarray(pixels).save(buffer, "JPEG", quality=quality, subsampling=subsampling)
     return buffer.getvalue()

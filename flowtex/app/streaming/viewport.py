@@ -139,7 +139,10 @@ class Viewport:
 
     def copy(self) -> Viewport:
         """Return a viewport with its own window that shows the same."""
-        image = self.scene.image if self.settings.noise == "image" else None
+        if self.settings.noise == "image":
+            image = self.scene.image
+        else:
+            image = None
         options = {**vars(self.scene.appearance), **dict(self.settings)}
         options["image"] = None if image is None else as_image(image)
         other = Viewport(self.field, **options)
@@ -165,9 +168,13 @@ class Viewport:
         was not chosen is that of the volume where the flow knows it, or else the present one. With
         ``keep_time`` the time stays as far as the flow has it.
         """
-        camera, surface = self.camera, self.scene.whole.surface
+        camera = self.camera
+        surface = self.scene.whole.surface
         time = first_time(self.scene, field, keep=keep_time)
-        changes: dict[str, Any] = {} if keep_range else {"clim": None}
+        if keep_range:
+            changes: dict[str, Any] = {}
+        else:
+            changes = {"clim": None}
         flows = [field, self.differences.get("field", field)]
         scenes: list[Scene] = []
         try:
@@ -188,7 +195,9 @@ class Viewport:
 
     def compare(self, changes: Mapping[str, Any] | None) -> None:
         """Show a second pane that differs, or one pane again for ``None`` or after an error."""
-        panes, first, changes = self.panes[:1], self.scene, dict(changes or {})
+        panes = self.panes[:1]
+        first = self.scene
+        changes = dict(changes or {})
         if changes:
             looks = {n: value for n, value in changes.items() if n not in ("time", "field")}
             beside = partial(first.beside, field=changes.get("field", first.field))
@@ -199,7 +208,8 @@ class Viewport:
         self._stop_following = lambda: None
         for pane in self.panes[1:]:
             pane.remove(render=False)
-        self.panes, self.differences = panes, changes
+        self.panes = panes
+        self.differences = changes
         if len(panes) > 1:
             left, right = panes
             self._stop_following = follow(lambda: left.scene, lambda: right.scene, self.differences)
@@ -210,7 +220,8 @@ class Viewport:
 
     def set_background(self, colour: Any) -> None:
         """Take the colour behind the surface: a theme's, or any that PyVista knows."""
-        colour = BACKGROUNDS.get(colour, colour) if isinstance(colour, str) else colour
+        if isinstance(colour, str):
+            colour = BACKGROUNDS.get(colour, colour)
         self.background = colour
         self.plotter.renderer.set_background(colour)
 
@@ -254,10 +265,12 @@ class Viewport:
         Then neither :meth:`set_time` nor drawing wait for them. Raises a FieldError when a step
         cannot be read.
         """
-        time = self.handle.time if time is None else time
+        if time is None:
+            time = self.handle.time
         for pane in self.panes:
             scene = pane.scene
-            times, name = scene.field.times, scene.appearance.scalar_name
+            times = scene.field.times
+            name = scene.appearance.scalar_name
             before, after, _ = steps_around(times, float(np.clip(time, times[0], times[-1])))
             for step in {before, after}:
                 scene.store.at(step)
@@ -289,7 +302,8 @@ class Viewport:
 
     def resize(self, width: int, height: int, *, fits: bool = True) -> None:
         """Change the size of the whole view; the camera of :meth:`home` may fit it again."""
-        at_home, self.size = self.chosen_camera is None, (width, height)
+        at_home = self.chosen_camera is None
+        self.size = (width, height)
         self._set_picture(*self.pane_size)
         if fits and at_home:
             self.home(**self.look)
@@ -306,7 +320,9 @@ class Viewport:
     @property
     def chosen_camera(self) -> Camera | None:
         """The camera; ``None`` if it is that of :meth:`home`."""
-        return None if self.camera == self._home else self.camera
+        if self.camera == self._home:
+            return None
+        return self.camera
 
     @property
     def sees_all(self) -> bool:
@@ -329,13 +345,17 @@ class Viewport:
             make = partial(pv.PolyData.from_regular_faces, points, corners)
             mesh = _meshes.get("mesh", make, owner=surface)
             hit, _ = mesh.ray_trace(start, start + direction * reach, first_point=True)
-            return np.asarray(hit, dtype=float) if len(hit) else None
+            if len(hit):
+                return np.asarray(hit, dtype=float)
+            return None
         normal = np.cross(*surface.frame)
         slope = float(direction @ normal)
         if abs(slope) < 1e-9:
             return None
         distance = float((surface.center - start) @ normal) / slope
-        return start + distance * direction if distance > 0 else None
+        if distance > 0:
+            return start + distance * direction
+        return None
 
     def draw(
         self, width: int, height: int, part: Rect | None = None, *, pane: FlowHandle | None = None
@@ -349,9 +369,12 @@ class Viewport:
         pane = pane or self.handle
         for other in self.panes:
             other.actor.SetVisibility(other is pane and other.visible)
-        (left, top, across, down), (wide, high) = part or (0, 0, *self._picture), self._picture
-        pane.surface.full_height, pane.surface.whole_height = down, high
-        camera, window = self.plotter.camera, cast("Any", self.plotter.render_window)
+        (left, top, across, down) = part or (0, 0, *self._picture)
+        (wide, high) = self._picture
+        pane.surface.full_height = down
+        pane.surface.whole_height = high
+        camera = self.plotter.camera
+        window = cast("Any", self.plotter.render_window)
         self.plotter.renderer.SetViewport(
             0, 0, *np.divide((width, height), self.plotter.window_size)
         )
@@ -385,7 +408,9 @@ class Viewport:
         The tiles of a pane come from its middle outwards. For a pixel of the picture, ``times`` are
         drawn along each side.
         """
-        panes, done, (height, width) = list(self.panes), 0, canvas.shape[:2]
+        panes = list(self.panes)
+        done = 0
+        (height, width) = canvas.shape[:2]
         wide = (width - (len(panes) - 1) * gap) // len(panes)
         for n, pane in enumerate(panes):
             first = n * (wide + gap)
@@ -423,10 +448,13 @@ def first_time(scene: Scene, field: FlowField, *, keep: bool) -> float:
 
 def time_in(scene: Scene, field: FlowField) -> float:
     """Return the time of a scene in another field; the last one if that has no such time."""
-    time, (first, last) = scene.time, map(float, field.times[[0, -1]])
+    time = scene.time
+    (first, last) = map(float, field.times[[0, -1]])
     with suppress(TypeError, ValueError):  # no dates, or of two calendars
         time += (scene.field.start - field.start).total_seconds()
-    return time if first <= time <= last and not scene.field.steady else last
+    if first <= time <= last and not scene.field.steady:
+        return time
+    return last
 
 
 def _fitting(

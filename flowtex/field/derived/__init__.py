@@ -64,7 +64,8 @@ def derived_steps(name: str, field: Any) -> Steps:
         )
     if field.uncertainty == NO_DATA:
         return LazySteps(len(field.times), partial(_of_known, name, field))
-    surface, projection = field.surface, field.projection
+    surface = field.surface
+    projection = field.projection
     gradient = node_gradient(surface, projection)
     return map_steps(field.velocity, partial(_derived, name, surface.points, projection, gradient))
 
@@ -96,8 +97,12 @@ def steps_of(field: Any, name: str) -> Steps:
     if name in DERIVED or name in FOLLOWED:
         check_derivable(field, name)
     vectors = [field.vectors or UNNAMED, *(part[:-2] for part in field.parts)]
-    vectors = [] if field.projection is not None else vectors
-    derived = DERIVED if finest_of(field) is None else ()
+    if field.projection is not None:
+        vectors = []
+    if finest_of(field) is None:
+        derived = DERIVED
+    else:
+        derived = ()
     names = ", ".join(map(repr, dict.fromkeys(["speed", *field.scalars, *vectors, *derived])))
     msg = f"the field has no scalar {name!r}; expected one of {names}"
     if COMPONENT.search(name):
@@ -123,8 +128,11 @@ def derived_unit(name: str, field: Any) -> str:
     time = field.time_unit
     if not time or (field.velocity_unit and not field.length_unit):
         return ""
-    time = f"({time})" if "/" in time else time
-    return f"1/{time}²" if name == "okubo_weiss" else f"1/{time}"
+    if "/" in time:
+        time = f"({time})"
+    if name == "okubo_weiss":
+        return f"1/{time}²"
+    return f"1/{time}"
 
 
 def is_velocity(name: str, unit: str = "") -> bool:
@@ -140,7 +148,9 @@ def magnitude_label(name: str, unit: str = "") -> str:
     """Return the text for the magnitude of vectors."""
     if is_velocity(name, unit):
         return "speed"
-    return f"|{name}|" if name else "magnitude"
+    if name:
+        return f"|{name}|"
+    return "magnitude"
 
 
 def component_name(name: str, axis: str) -> str:
@@ -156,9 +166,11 @@ def with_vector_scalar(field: Any, name: str) -> Any:
     """
     own = field.vectors or UNNAMED
     base, _, letter = name.rpartition("_")
-    base = own if base == "speed" else base
+    if base == "speed":
+        base = own
     parts = [n for n in field.parts if n.rpartition("_")[0] == name]
-    long_name, unit = name, ""
+    long_name = name
+    unit = ""
     steps: Steps
     on_cells: tuple[str, ...] = ()
     if name in field.scalars or field.projection is not None:
@@ -168,7 +180,10 @@ def with_vector_scalar(field: Any, name: str) -> Any:
         long_name = f"{own}_{letter}"
         if name == own:
             long_name = magnitude_label(field.vectors, field.velocity_unit)
-        own_part = norm if name == own else lambda vectors: vectors[..., axis]
+        if name == own:
+            own_part = norm
+        else:
+            own_part = lambda vectors: vectors[..., axis]
         steps = scaled_steps(map_steps(field.velocity, own_part), field.speed_scale)
         unit = field.speed_unit
     elif name in field.parts:
@@ -176,7 +191,10 @@ def with_vector_scalar(field: Any, name: str) -> Any:
     elif parts:
         steps = np.sqrt(sum(np.square(field.parts[part]) for part in parts))
         long_name = f"|{name}|"
-        on_cells = (name,) if parts[0] in field.on_cells else ()
+        if parts[0] in field.on_cells:
+            on_cells = (name,)
+        else:
+            on_cells = ()
     else:
         return field
     return field.same_flow(

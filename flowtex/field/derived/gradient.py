@@ -58,8 +58,10 @@ def node_gradient(
 
     ``known`` are the nodes with values, (J, I), by default all that are valid.
     """
-    points, valid = true_positions(surface.points, projection), surface.valid
-    valid = valid if known is None else valid & known
+    points = true_positions(surface.points, projection)
+    valid = surface.valid
+    if known is not None:
+        valid = valid & known
     is_flat_map = points is not surface.points
     if is_flat_map and projection is not None:
         valid = valid & _has_vectors(points, projection, poles=isinstance(surface, GridSurface))
@@ -67,7 +69,10 @@ def node_gradient(
         gradient = _triangle_gradient(surface, points, valid)
         return _on_sphere(gradient, points, projection)
     # On the sphere one turn leads to the same place.
-    offset = np.zeros((2, 3)) if is_flat_map else surface.offset
+    if is_flat_map:
+        offset = np.zeros((2, 3))
+    else:
+        offset = surface.offset
     gradient = _grid_gradient(points, valid, surface.periodic, offset, apart=is_flat_map)
     return _on_sphere(gradient, points, projection)
 
@@ -164,7 +169,8 @@ def _weights_around(line: Floats, ring: Floats) -> Floats | None:
 
     They are 0 if the nodes do not lie all around it.
     """
-    has_ring, weights = finite_nodes(ring), np.zeros(len(ring))
+    has_ring = finite_nodes(ring)
+    weights = np.zeros(len(ring))
     ends = line[finite_nodes(line)]
     if len(ends) < 3 or has_ring.sum() < 3:
         return None
@@ -219,7 +225,8 @@ def _grid_gradient(
         height[~(height**2 > COLLAPSED_AREA * (height**2 + skew**2))] = np.nan
         two /= height
         # Cells per unit of length: of i and j along each direction.
-        i_one, j_two = 1 / length, 1 / height
+        i_one = 1 / length
+        j_two = 1 / height
         i_two = -skew * i_one * j_two
     if _clockwise(one, two, points, valid):
         for array in (two, i_two, j_two):
@@ -245,7 +252,8 @@ def _difference(nodal: Floats, valid: Bools, axis: int, turn: Floats | None) -> 
     """Return the difference per cell along an axis, of second order also beside gaps."""
     result = np.zeros_like(nodal)  # the ends of an open axis are halved before they are set
     data, out = (np.swapaxes(a, 1, axis + 1) for a in (nodal, result))
-    valid = valid.T if axis else valid
+    if axis:
+        valid = valid.T
     is_central = np.zeros(valid.shape, dtype=bool)
     is_central[1:-1] = valid[2:] & valid[:-2] & valid[1:-1]
     np.subtract(data[:, 2:], data[:, :-2], out=out[:, 1:-1])
@@ -264,19 +272,32 @@ def _one_sided(
 ) -> Floats:
     """Return differences (C, N) near a border or a gap; ``turn`` is the period of a closed axis."""
     last = data.shape[1] - 1
-    center, result = data[:, line, place], np.full((len(data), len(line)), np.nan)
-    usable, done = valid[line, place], np.zeros(len(line), dtype=bool)
+    center = data[:, line, place]
+    result = np.full((len(data), len(line)), np.nan)
+    usable = valid[line, place]
+    done = np.zeros(len(line), dtype=bool)
     for side in (1, -1):
-        values, exists = [], []
+        values = []
+        exists = []
         for distance in (1, 2):
             number = line + side * distance
-            turns = np.zeros_like(number) if turn is None else number // last
-            at = np.clip(number, 0, last) if turn is None else number - turns * last
+            if turn is None:
+                turns = np.zeros_like(number)
+            else:
+                turns = number // last
+            if turn is None:
+                at = np.clip(number, 0, last)
+            else:
+                at = number - turns * last
             exists.append(usable & (at == number if turn is None else True) & valid[at, place])
-            shift = 0.0 if turn is None else turns * turn[:, None]
+            if turn is None:
+                shift = 0.0
+            else:
+                shift = turns * turn[:, None]
             values.append(data[:, at, place] + shift)
         near, far = values
-        first, second = exists[0] & ~done, exists[0] & exists[1]
+        first = exists[0] & ~done
+        second = exists[0] & exists[1]
         result[:, first] = side * (near - center)[:, first]
         result[:, second] = side * (4 * near - 3 * center - far)[:, second] / 2
         done |= second
@@ -297,7 +318,8 @@ def _triangle_gradient(surface: TriangleSurface, points: Floats, valid: Bools) -
     """
     if points is not surface.points or valid is not surface.valid:
         surface = TriangleSurface(points, surface.triangles, valid)
-    points, (one, two) = surface.points[0], surface.tangents[:, 0]
+    points = surface.points[0]
+    (one, two) = surface.tangents[:, 0]
     if _clockwise(one.T[:, None], two.T[:, None], points.T[:, None], surface.valid):
         two = -two
     rows, columns = _near_nodes(surface)
@@ -352,7 +374,8 @@ def _applied(operators: list[Any], nodal: Floats) -> Floats:
 def _near_nodes(surface: TriangleSurface) -> tuple[Indices, Indices]:
     """Return pairs of nodes at most two edges apart, the first of each pair in order."""
     corners = surface.triangles[surface.cells]
-    a, b = corners.ravel(), np.roll(corners, 1, axis=1).ravel()
+    a = corners.ravel()
+    b = np.roll(corners, 1, axis=1).ravel()
     count = surface.valid.size
     ones = np.ones(2 * len(a), dtype=np.int32)
     edges = scipy.sparse.csr_array(
@@ -360,7 +383,8 @@ def _near_nodes(surface: TriangleSurface) -> tuple[Indices, Indices]:
     )
     near = (edges @ edges + edges).tocoo()
     apart = near.row != near.col
-    rows, columns = near.row[apart], near.col[apart]
+    rows = near.row[apart]
+    columns = near.col[apart]
     order = np.argsort(rows, kind="stable")
     return rows[order].astype(np.intp), columns[order].astype(np.intp)
 
@@ -371,7 +395,8 @@ def _clockwise(one: Floats, two: Floats, points: Floats, valid: Bools) -> bool:
     usable = valid & np.isfinite(normal).all(axis=0)
     if not usable.any():
         return False
-    normal, place = normal[:, usable], points[:, usable]
+    normal = normal[:, usable]
+    place = points[:, usable]
     mean = normal.mean(axis=1)
     if np.linalg.norm(mean) > 1 - 1e-6:
         return bool(mean[np.argmax(np.abs(mean))] < 0)

@@ -152,7 +152,9 @@ class Projection:
 
     @property
     def _origin(self) -> float:
-        return self.center[0] if self.name in NAMES else 0.0
+        if self.name in NAMES:
+            return self.center[0]
+        return 0.0
 
     @cached_property
     def _crs(self) -> CRS:
@@ -160,7 +162,8 @@ class Projection:
         text = self.name
         if text in NAMES:
             # Longitudes are relative to the middle, so that 180 degrees is the edge of the map.
-            lat, half = self.center[1], self.half_height
+            lat = self.center[1]
+            half = self.half_height
             text = f"{NAMES[text]} +lon_0=0 +R={EARTH_RADIUS:.12g} +units=m"
             if self.name == "platecarree":
                 text += f" +lat_ts={lat:.12g}"
@@ -192,7 +195,8 @@ class Projection:
         They are NaN where the projection is undefined.
         """
         if self.is_globe:
-            a, b = np.radians(lon), np.radians(lat)
+            a = np.radians(lon)
+            b = np.radians(lat)
             parts = (np.cos(b) * np.cos(a), np.cos(b) * np.sin(a), np.sin(b))
             return np.asarray(EARTH_RADIUS * np.stack(np.broadcast_arrays(*parts), axis=-1))
         lon, lat = np.broadcast_arrays(lon, lat)
@@ -215,8 +219,11 @@ class Projection:
         This is the inverse of :meth:`vectors`.
         """
         to_east, to_north = self._directions(lon, lat)
-        east, north = dot(vectors, to_east), dot(vectors, to_north)
-        ee, en, nn = dot(to_east, to_east), dot(to_east, to_north), dot(to_north, to_north)
+        east = dot(vectors, to_east)
+        north = dot(vectors, to_north)
+        ee = dot(to_east, to_east)
+        en = dot(to_east, to_north)
+        nn = dot(to_north, to_north)
         area = ee * nn - en * en
         return (east * nn - north * en) / area, (north * ee - east * en) / area
 
@@ -231,13 +238,15 @@ class Projection:
     def _directions(self, lon: Floats, lat: Floats) -> tuple[Floats, Floats]:
         """Return the change of position for a metre eastward and a metre northward."""
         if self.is_globe:
-            a, b = np.radians(lon), np.radians(lat)
+            a = np.radians(lon)
+            b = np.radians(lat)
             zero = np.zeros_like(a)
             east = np.stack([-np.sin(a), np.cos(a), zero], axis=-1)
             north = np.stack([-np.sin(b) * np.cos(a), -np.sin(b) * np.sin(a), np.cos(b)], axis=-1)
             return east, north
         lat = np.clip(lat, NEAREST_POLE - 90, 90 - NEAREST_POLE)
-        node, metre = self.positions(lon, lat), DEGREE * STEP
+        node = self.positions(lon, lat)
+        metre = DEGREE * STEP
         east = _mean(self.positions(lon + STEP, lat) - node, node - self.positions(lon - STEP, lat))
         north = _mean(
             self.positions(lon, lat + STEP) - node, node - self.positions(lon, lat - STEP)
@@ -258,7 +267,8 @@ class Projection:
             inner = inverse(INSIDE * x, INSIDE * y)
             lon, lat = (np.where(finite, a, b) for a, b in zip((lon, lat), inner, strict=True))
             finite = np.isfinite(lon) & np.isfinite(lat)
-        lon, lat = np.where(finite, lon, np.nan), np.where(finite, lat, np.nan)
+        lon = np.where(finite, lon, np.nan)
+        lat = np.where(finite, lat, np.nan)
         return (lon + self._origin + 180.0) % 360.0 - 180.0, lat
 
     def scales(self, lon: Floats, lat: Floats) -> Floats:
@@ -334,7 +344,8 @@ def graticule(projection: Projection, box: Floats | None = None) -> MapLines:
 def coast_points() -> tuple[Floats, Bools]:
     """Return longitude and latitude of all coasts, and which points are joined to the next."""
     with np.load(COASTS, allow_pickle=False) as file:
-        steps, lengths = file["steps"], file["lengths"]
+        steps = file["steps"]
+        lengths = file["lengths"]
     lonlat = np.cumsum(steps, axis=0, dtype=np.int16) / STEPS_PER_DEGREE
     joined = np.ones(len(lonlat) - 1, dtype=bool)
     joined[np.cumsum(lengths)[:-1] - 1] = False
@@ -379,7 +390,8 @@ def _grid_lines(
     """Return meridians (0) or parallels (1) around places, and which points are joined."""
     order = slice(None, None, 1 - 2 * kind)
     degrees, along = (lon, lat)[order]
-    step, length = (steps[kind], steps[1 - kind])
+    step = steps[kind]
+    length = steps[1 - kind]
     cells = np.unique(np.floor(degrees / step).astype(int))
     values = np.union1d(cells, cells + 1) * step
     values = values[(values < 180) if kind == 0 else (np.abs(values) < 90)]
@@ -402,14 +414,19 @@ def _mapped(projection: Projection, lonlat: Floats, joined: Bools, box: Floats |
     before, after = (between(*ends, share, straight=False) for share in sides)
     # Both parts of a torn piece follow each other, and are joined to pieces that are not torn.
     gap = np.full(int(torn.sum()), np.nan)
-    (left, right), (torn_left, torn_right) = place[~torn].T, place[torn].T
+    (left, right) = place[~torn].T
+    (torn_left, torn_right) = place[torn].T
     order = np.argsort(np.concatenate([left, torn_left, torn_left]), kind="stable")
     first = np.concatenate([first[~torn], first[torn], after])
     last = np.concatenate([last[~torn], before, last[torn]])
     left = np.concatenate([left, torn_left, gap])
     right = np.concatenate([right, gap, torn_right])
-    first, last, left, right = first[order], last[order], left[order], right[order]
-    starts, stops = projection.positions(*first.T), projection.positions(*last.T)
+    first = first[order]
+    last = last[order]
+    left = left[order]
+    right = right[order]
+    starts = projection.positions(*first.T)
+    stops = projection.positions(*last.T)
     begin, end = (Projection(GLOBE).positions(*places.T) for places in (first, last))
     length, true = (np.linalg.norm(a, axis=1) for a in (stops - starts, end - begin))
     keep = length <= MOST_STRETCHED * true
@@ -422,7 +439,8 @@ def _mapped(projection: Projection, lonlat: Floats, joined: Bools, box: Floats |
 def _pieces(lonlat: Floats, joined: Bools) -> tuple[Floats, Floats, Floats]:
     """Return both ends of short pieces of lines, (N, 2) each, and their places along lines."""
     index = np.flatnonzero(joined)
-    start, steps = lonlat[index], lonlat[index + 1] - lonlat[index]
+    start = lonlat[index]
+    steps = lonlat[index + 1] - lonlat[index]
     steps[:, 0] = (steps[:, 0] + 180) % 360 - 180
     counts = np.maximum(np.ceil(np.abs(steps).max(axis=1) / LONGEST_PIECE).astype(int), 1)
     segment = np.repeat(np.arange(len(index)), counts)
@@ -451,15 +469,18 @@ def tears(
     missing = np.isnan([start[:, 0], stop[:, 0]])
     torn = ~missing.all(axis=0) & ~(bend <= BENT * length)
     first, last, length, bend, a, b = (x[torn] for x in (first, last, length, bend, start, stop))
-    low, high = np.zeros(len(first)), np.ones(len(first))
+    low = np.zeros(len(first))
+    high = np.ones(len(first))
     for _ in range(HALVINGS):
         half = (low + high) / 2
         m = projection.positions(*place(first, last, half).T)
         missing = np.isnan([a[:, 0], m[:, 0], b[:, 0]])
         to_low, to_high = (np.linalg.norm(m - end, axis=1) for end in (a, b))
         is_low = np.where(missing.any(axis=0), missing[1] == missing[0], to_low < to_high)
-        low, high = np.where(is_low, half, low), np.where(is_low, high, half)
-        a, b = np.where(is_low[:, None], m, a), np.where(is_low[:, None], b, m)
+        low = np.where(is_low, half, low)
+        high = np.where(is_low, high, half)
+        a = np.where(is_low[:, None], m, a)
+        b = np.where(is_low[:, None], b, m)
     wide = ~(np.linalg.norm(b - a, axis=1) <= LEAST_TEAR * length) | (bend > MOST_BENT * length)
     torn[torn] = wide
     return torn, low[wide], high[wide]

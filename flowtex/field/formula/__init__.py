@@ -174,11 +174,10 @@ class Formula:
         """Read the arguments of :func:`flowtex.formula`; raise a FieldError if they are invalid."""
         places, defaults = _surface(surface)
         if len(expressions) not in ((2, 3) if places else (2,)):
-            expected = (
-                "two, the rates of u and v, or three, the velocity along x, y and z"
-                if places
-                else "two, the rates of x and y"
-            )
+            if places:
+                expected = "two, the rates of u and v, or three, the velocity along x, y and z"
+            else:
+                expected = "two, the rates of x and y"
             raise FieldError(f"{len(expressions)} expressions are given; expected {expected}")
         for name, ends in ranges.items():
             if ends is not None and name not in defaults:
@@ -293,7 +292,9 @@ def _range(name: str, ends: Any) -> tuple[float, float]:
 def derivative(tree: Tree, name: str) -> Tree:
     """Return the derivative of a tree with respect to a name."""
     if not isinstance(tree, tuple):
-        return 1.0 if tree == name else 0.0
+        if tree == name:
+            return 1.0
+        return 0.0
     operation, *parts = tree
     if operation == "*":
         parts = _powers(parts)
@@ -311,9 +312,13 @@ def derivative(tree: Tree, name: str) -> Tree:
             return simple("+", *changes)
         case "min" | "max":
             is_first = ("<=" if operation == "min" else ">=", *parts)
-            return ("where", is_first, *rates) if any(rates) else 0.0
+            if any(rates):
+                return ("where", is_first, *rates)
+            return 0.0
         case "where":
-            return ("where", parts[0], *rates[1:]) if any(rates[1:]) else 0.0
+            if any(rates[1:]):
+                return ("where", parts[0], *rates[1:])
+            return 0.0
     terms = [
         simple("*", filled(rule, dict(zip("ab", parts, strict=False))), rate)
         for rule, rate in zip(_rules(operation), rates, strict=False)
@@ -335,7 +340,10 @@ def _halves(operation: str, parts: Sequence[Tree]) -> list[Tree]:
     middle = len(parts) // 2
     halves: list[Tree] = []
     for half in (parts[:middle], parts[middle:]):
-        whole = half[0] if len(half) == 1 else (operation, *half)
+        if len(half) == 1:
+            whole = half[0]
+        else:
+            whole = (operation, *half)
         halves.append(whole)
     return halves
 
@@ -349,18 +357,25 @@ def filled(tree: Tree, trees: Mapping[str, Tree]) -> Tree:
     """Return a tree with other trees in place of some of its names."""
     if isinstance(tree, tuple):
         return simple(tree[0], *(filled(part, trees) for part in tree[1:]))
-    return trees.get(tree, tree) if isinstance(tree, str) else tree
+    if isinstance(tree, str):
+        return trees.get(tree, tree)
+    return tree
 
 
 def simple(operation: str, *parts: Tree) -> Tree:
     """Return the tree of an operation; sums and products without terms 0 and factors 1."""
     if operation in ("+", "*"):
-        neutral = 0.0 if operation == "+" else 1.0
+        if operation == "+":
+            neutral = 0.0
+        else:
+            neutral = 1.0
         if operation == "*" and 0.0 in parts:
             return 0.0
         parts = tuple(part for part in parts if part != neutral)
         if len(parts) < 2:
-            return parts[0] if parts else neutral
+            if parts:
+                return parts[0]
+            return neutral
     elif operation == "^" and parts[1] == 1.0:
         return parts[0]
     if all(isinstance(part, float) for part in parts):
@@ -379,7 +394,8 @@ class Rates:
     """
 
     def __init__(self, formula: Formula, time: float) -> None:
-        self._formula, self._time = formula, time
+        self._formula = formula
+        self._time = time
         self.ends = np.array(list(formula.ranges.values()))
         self._values = {name: each.value for name, each in formula.parameters.items()} | {"t": time}
         self.trees, self._tangents = _trees(formula)

@@ -79,7 +79,9 @@ def evaluate(tree: Tree, values: Values) -> Any:
         return tree
     function, count = OPERATIONS[tree[0]]
     arguments = [evaluate(part, values) for part in tree[1:]]
-    return function(*arguments) if count else reduce(function, arguments)
+    if count:
+        return function(*arguments)
+    return reduce(function, arguments)
 
 
 def size(tree: Tree) -> int:
@@ -192,7 +194,8 @@ class _Reader:
             if name in (*self.names, *CONSTANTS):
                 self.fail(f"{name} is not a function; write {name}*( for a product", node)
             self.fail(f"the function {name!r} does not exist; {near_names(name, FUNCTIONS)}", node)
-        count, found = OPERATIONS[function][1], len(node.args)
+        count = OPERATIONS[function][1]
+        found = len(node.args)
         if found != count if count else found < 2:
             self.fail(f"{name} has {found} arguments; expected {count or 'two or more'}", node)
         return (function, *map(inner, node.args))

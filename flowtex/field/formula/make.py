@@ -169,7 +169,10 @@ def formula(
 
 
 def _known_formula(name: Any) -> tuple[str, tuple[str, ...], dict[str, Any]]:
-    key = name.replace(" ", "_") if isinstance(name, str) else ""
+    if isinstance(name, str):
+        key = name.replace(" ", "_")
+    else:
+        key = ""
     if key not in KNOWN:
         raise FieldError(
             f"only one expression is given, {name!r}, and it is not the name of a known formula; "
@@ -224,7 +227,8 @@ def line_arguments(line: str) -> tuple[list[str], dict[str, Any]]:
 
     Raises a FieldError when numbers are invalid.
     """
-    expressions, named = [], {}
+    expressions = []
+    named = {}
     for part in line.split(";"):
         match = _NAMED.match(part)
         if match is None:
@@ -263,7 +267,8 @@ def line_field(line: str) -> FlowField:
 
 def same_formula(first: FlowField, second: FlowField) -> bool:
     """Return whether two flows come from one formula, perhaps with other values of parameters."""
-    one, other = first.formula, second.formula
+    one = first.formula
+    other = second.formula
     if one is None or other is None:
         return False
     return (one.texts, one.ranges) == (other.texts, other.ranges)

@@ -62,11 +62,13 @@ def close_axes(
         elif letter in periodic:
             close, line = _requested_closure(lines, np.swapaxes(velocity, 1, axis + 1))
         else:
-            close, line = False, None
+            close = False
+            line = None
         closed[axis] = close
         if line is not None:
             points = np.swapaxes(np.concatenate([lines, line]), 0, axis)
-            velocity, valid = _repeat_first(velocity, axis + 1), _repeat_first(valid, axis)
+            velocity = _repeat_first(velocity, axis + 1)
+            valid = _repeat_first(valid, axis)
             scalars = {k: _repeat_first(s, axis + 1) for k, s in scalars.items()}
         elif close:
             _join_ends(velocity, valid, axis)
@@ -113,7 +115,10 @@ def _coincide(points: Floats, extent: float) -> bool:
     """Return whether the last line lies on the first one, and the lines between do not."""
     across = np.linalg.norm(points[len(points) // 2] - points[0], axis=-1)
     across = across[np.isfinite(across)]
-    middle = float(across.max()) if len(across) else np.inf
+    if len(across):
+        middle = float(across.max())
+    else:
+        middle = np.inf
     gap = np.linalg.norm(points[-1] - points[0], axis=-1)
     ends = np.stack([points[1] - points[0], points[-1] - points[-2]])
     steps = np.linalg.norm(ends, axis=-1).max(axis=0)
@@ -142,14 +147,17 @@ def _one_cell_short(points: Floats) -> bool:
 
 def _longitude(points: Floats) -> tuple[bool, Floats | None] | None:
     """Recognise global longitude in degrees along the first axis of a flat map."""
-    x, y = points[..., 0], points[..., 1]
+    x = points[..., 0]
+    y = points[..., 1]
     if not np.isfinite(x[:, 0]).all():
         return None
     # One line is enough to exclude most other meshes.
     steps = np.diff(x[:, 0])
     even = len(steps) > 3 and np.ptp(steps) <= 1e-3 * abs(steps[0]) and steps[0] != 0
-    span, step = abs(x[-1, 0] - x[0, 0]), abs(steps[0])
-    repeats, ends_short = abs(span - 360) <= 1e-3 * step, abs(span + step - 360) <= 1e-2 * step
+    span = abs(x[-1, 0] - x[0, 0])
+    step = abs(steps[0])
+    repeats = abs(span - 360) <= 1e-3 * step
+    ends_short = abs(span + step - 360) <= 1e-2 * step
     if not (even and (repeats or ends_short)):
         return None
     if not np.isfinite(points).all() or np.ptp(points[..., 2]) > 0:
@@ -166,8 +174,10 @@ def _repeat_first(a: A, axis: int) -> A:
 
 def _join_ends(velocity: Floats, valid: Bools, axis: int) -> None:
     """Give two coinciding lines one velocity, in place; data may differ across the seam."""
-    v, ok = np.swapaxes(velocity, 1, axis + 1), np.swapaxes(valid, 0, axis)
-    first, last = ok[0].copy(), ok[-1].copy()
+    v = np.swapaxes(velocity, 1, axis + 1)
+    ok = np.swapaxes(valid, 0, axis)
+    first = ok[0].copy()
+    last = ok[-1].copy()
     mean = (v[:, 0] + v[:, -1]) / 2
     only = np.where(first[:, None], v[:, 0], v[:, -1])
     v[:, 0] = v[:, -1] = np.where((first & last)[:, None], mean, only)
@@ -273,7 +283,8 @@ def oriented(velocity: Floats, valid: Bools, periodic: tuple[bool, bool]) -> Flo
     sign = np.where(np.sum(unit * unit[parent], axis=-1) < 0, -1.0, 1.0)
     # Every node takes the sign of its parent, twice as far up each time.
     while (parent != parent[parent]).any():
-        sign, parent = sign * sign[parent], parent[parent]
+        sign = sign * sign[parent]
+        parent = parent[parent]
     return np.asarray((flat * sign[:, None]).reshape(velocity.shape))
 
 
@@ -308,7 +319,9 @@ def corner_signs(vectors: AnyArray) -> NDArray[np.int8] | None:
     for sign, corner in zip(signs[1:, :-1, :-1], others, strict=True):
         sign[np.sum(mean * corner, axis=-1) < 0] = -1
         mean += sign[..., None] * corner
-    return signs if (signs < 0).any() else None
+    if (signs < 0).any():
+        return signs
+    return None
 
 
 def weighted_axis(vectors: Floats, weights: Floats) -> Floats:

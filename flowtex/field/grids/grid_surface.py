@@ -144,9 +144,13 @@ class GridSurface(NodeSurface):
         inside = 0 <= j <= rows - 1 and 0 <= i <= columns - 1
         for row, column in product(*(sorted(choice, reverse=True) for choice in cells)):
             if inside and self.cells[row, column]:
-                b, a = j - row, i - column
+                b = j - row
+                a = i - column
                 number = 2 * (row * (columns - 1) + column) + int(a < b)
-                shares = (1 - a, a - b, b) if a >= b else (1 - b, a, b - a)
+                if a >= b:
+                    shares = (1 - a, a - b, b)
+                else:
+                    shares = (1 - b, a, b - a)
                 return np.array([j, i]), number, np.array(shares)
         return None
 
@@ -155,7 +159,8 @@ class GridSurface(NodeSurface):
         """Nodes with one ghost line on each side, (J + 2, I + 2, 3)."""
         good = self.has_position
         padded = np.empty((self.shape[0] + 2, self.shape[1] + 2, 3))
-        rows, columns = padded[:, 1:-1], np.swapaxes(padded, 0, 1)
+        rows = padded[:, 1:-1]
+        columns = np.swapaxes(padded, 0, 1)
         rows[1:-1] = self.points
         rows[0], rows[-1] = _ghosts(rows[1:-1], good, self.offset[0], periodic=self.periodic[0])
         good = np.pad(good, ((1, 1), (0, 0)), mode="edge").T
@@ -200,7 +205,10 @@ class GridSurface(NodeSurface):
             near = np.maximum(
                 1 - np.abs(np.arange(self.shape[1 - pole.component]) - pole.line) / POLE_LINES, 0
             )
-            share = near[:, None] if pole.component else near
+            if pole.component:
+                share = near[:, None]
+            else:
+                share = near
             lengths[1 - pole.component] = np.hypot(
                 lengths[1 - pole.component], share * lengths[pole.component]
             )
@@ -248,7 +256,9 @@ class CubicMap:
     def __init__(
         self, surface: GridSurface, frame: Floats, origin: Floats, dtype: type = np.float64
     ) -> None:
-        self._shape, self._periodic, self._poles = surface.shape, surface.periodic, surface.poles
+        self._shape = surface.shape
+        self._periodic = surface.periodic
+        self._poles = surface.poles
         local = np.moveaxis(surface.tangents @ frame.T, -1, 0)
         #: Tangents by component, (C, 2, J * I).
         self.tangents: AnyArray = np.ascontiguousarray(local, dtype).reshape(len(frame), 2, -1)
@@ -304,7 +314,8 @@ class CubicMap:
 
     def _cubic(self, at: Indices, s: AnyArray, t: AnyArray, error: float) -> AnyArray:
         """Interpolate between 16 nodes each, given the lower corners and fractions of the cells."""
-        a, b = 0.5 * s * (s - 1), 0.5 * t * (t - 1)
+        a = 0.5 * s * (s - 1)
+        b = 0.5 * t * (t - 1)
         shares = (a, b, a * b)
         result = np.empty((len(self.nodes), len(at)), s.dtype)
         for c, out in enumerate(result):

@@ -69,7 +69,9 @@ class Pole:
 
     def lines(self, nodal: AnyArray, axis: int = 0) -> AnyArray:
         """Return a view (..., lines, n + 1, ...) of data, (..., J, I, ...) from ``axis`` on."""
-        return nodal if self.component else np.swapaxes(nodal, axis, axis + 1)
+        if self.component:
+            return nodal
+        return np.swapaxes(nodal, axis, axis + 1)
 
     def depth(self, position: AnyArray) -> AnyArray:
         """Return cells between the pole and positions (2, N) that are not beyond it, (N,)."""
@@ -106,10 +108,12 @@ class Pole:
 
     def nearest(self, position: Floats, near: Floats) -> Floats:
         """Return positions (2, N) in the form, before or beyond the pole, nearest to others."""
-        a, c = 1 - self.component, self.component
+        a = 1 - self.component
+        c = self.component
         beyond = self.depth(near) < 0
         depth = self.depth(position) * self.inward
-        straight, across = position[a], self.opposite(position[a])
+        straight = position[a]
+        across = self.opposite(position[a])
         straight, across = (
             x + self.cells * np.rint((near[a] - x) / self.cells) for x in (straight, across)
         )
@@ -129,7 +133,8 @@ class Pole:
 
     def vector(self, along: Floats) -> Floats:
         """Return vectors (..., 2) in the plane from components (..., n + 1) by :meth:`along`."""
-        rays, parts = self.rays[:-1], along[..., :-1] * self.inward
+        rays = self.rays[:-1]
+        parts = along[..., :-1] * self.inward
         square = np.sum(rays**2, axis=-1, keepdims=True)
         return np.asarray(parts @ rays @ np.linalg.inv((rays / square).T @ rays))
 
@@ -162,8 +167,10 @@ class Poles:
         if not len(outside):
             return position
         result = np.array(position)
-        c, a = self.component, 1 - self.component
-        x, y = result[c][outside], result[a][outside]
+        c = self.component
+        a = 1 - self.component
+        x = result[c][outside]
+        y = result[a][outside]
         if self.both:
             # Twice over the poles is once around.
             x -= (2 * end * np.rint((x - end / 2) / (2 * end))).astype(x.dtype)
@@ -196,7 +203,10 @@ def find_poles(
     """Find the poles of nodes (J, I, 3); one that is not ``valid`` is a hole."""
     if periodic[0] == periodic[1]:
         return None
-    axis = 0 if periodic[1] else 1
+    if periodic[1]:
+        axis = 0
+    else:
+        axis = 1
     p, has_position, data = (np.swapaxes(a, 0, axis) for a in (points, usable, valid))
     if len(p) < 3:
         return None

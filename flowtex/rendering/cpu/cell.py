@@ -72,7 +72,8 @@ class CellPath:
         return self._mix(direction, unit(self._velocity(at)[:, :3]))
 
     def _mix(self, values: Floats, cell_values: Floats) -> Floats:
-        result, share = values.copy(), self.share[self._near]
+        result = values.copy()
+        share = self.share[self._near]
         result[self._near] += (share * (cell_values - result[self._near]).T).T
         return np.asarray(result)
 
@@ -101,8 +102,10 @@ def _square(slices: Slices, coordinate: Floats, values: Values) -> tuple[Floats,
     """Return the factors (4, 4, N) of 1, x, y and x y of each of four nodes, and the nodes."""
     size = np.array(values["u_slicesSize"])
     texel = coordinate * size - 0.5
-    f, finest = texel - np.floor(texel), np.zeros(len(texel))
-    (x, y), one = f.T, np.ones(len(texel))
+    f = texel - np.floor(texel)
+    finest = np.zeros(len(texel))
+    (x, y) = f.T
+    one = np.ones(len(texel))
     factors = np.array(
         [
             [(1 - x) * (1 - y), y - 1, x - 1, one],
@@ -126,7 +129,8 @@ def _triangle(
     slices: TriangleSlices, places: TrianglePlaces, values: Values
 ) -> tuple[Floats, Iterator[_Node]]:
     """Return the factors (3, 3, N) of 1, x and y of each of three nodes, and the nodes."""
-    one, none = np.ones(len(places)), np.zeros(len(places))
+    one = np.ones(len(places))
+    none = np.zeros(len(places))
     normal = np.cross(places.by[:, 0], places.by[:, 1])
     normal /= np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), np.finfo(float).tiny)
     a, b, c = places.shares.T

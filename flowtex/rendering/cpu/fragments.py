@@ -49,7 +49,8 @@ class Fragments:
     @classmethod
     def of(cls, textures: TextureSet, coverage: Coverage) -> Fragments:
         """Interpolate the values of the nodes to the pixels of a coverage."""
-        geometry, image = textures.geometry, textures.image
+        geometry = textures.geometry
+        image = textures.image
 
         def varying(nodal: NDArray[np.floating]) -> Varying:
             return Varying(*coverage.mix(nodal.reshape(-1, nodal.shape[-1])))
@@ -83,11 +84,14 @@ class Fragments:
     @property
     def by(self) -> Floats:
         """Change of the coordinates by a vector in the surface's frame, (N, 2, 3)."""
-        at, dx, dy = self.coordinate, self.position.dx, self.position.dy
+        at = self.coordinate
+        dx = self.position.dx
+        dy = self.position.dy
         normal = np.cross(dx, dy)
         square = np.einsum("nc,nc->n", normal, normal)[:, None]
         across = normal / np.maximum(square, np.finfo(float).tiny)
-        first, second = np.cross(dy, across), np.cross(across, dx)
+        first = np.cross(dy, across)
+        second = np.cross(across, dx)
         return np.asarray(at.dx[:, :, None] * first[:, None] + at.dy[:, :, None] * second[:, None])
 
     def __len__(self) -> int:
@@ -99,7 +103,10 @@ class Fragments:
         for start in range(0, len(self), count):
             part = slice(start, start + count)
             image, normal = (None if v is None else v[part] for v in (self.image, self.normal))
-            nodes = None if self.nodes is None else self.nodes[part]
+            if self.nodes is None:
+                nodes = None
+            else:
+                nodes = self.nodes[part]
             yield part, Fragments(self.position[part], self.coordinate[part], image, normal, nodes)
 
 

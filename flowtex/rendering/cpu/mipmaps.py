@@ -23,7 +23,10 @@ class Mips:
         repeat: tuple[bool, bool] = (False, False),
     ) -> None:
         layers, height, width, channels = texels.shape
-        last = max(height, width).bit_length() - 1 if levels is None else levels
+        if levels is None:
+            last = max(height, width).bit_length() - 1
+        else:
+            last = levels
         chain = [_half(texels)]
         for _ in range(last):
             chain.append(_half(_reduced(chain[-1])))
@@ -56,11 +59,13 @@ class Mips:
         return np.asarray(self._texels[layer * (self._heights[0] * self._widths[0]) + texel])
 
     def _bilinear(self, coordinate: Floats, level: Indices, layer: Indices) -> Floats:
-        height, width = self._heights[level], self._widths[level]
+        height = self._heights[level]
+        width = self._widths[level]
         left, right, u = _neighbours(coordinate[:, 0], width, repeat=self._repeat[1])
         low, high, v = _neighbours(coordinate[:, 1], height, repeat=self._repeat[0])
         first = self._starts[level] + layer * (height * width)
-        low, high = first + low * width, first + high * width
+        low = first + low * width
+        high = first + high * width
         texels = self._texels
         a = texels[low + left] * (1 - u) + texels[low + right] * u
         b = texels[high + left] * (1 - u) + texels[high + right] * u

@@ -50,7 +50,8 @@ class Motion:
 
 def noise_lattice(position: Floats, octave: Ints, values: Values) -> NoiseLattice:
     """Lattice of an octave (N,) at positions (N, 3) relative to the origin of the noise."""
-    odd, doublings = (octave & 1 == 1)[:, None], (octave >> 1)[:, None]
+    odd = (octave & 1 == 1)[:, None]
+    doublings = (octave >> 1)[:, None]
     shrink = np.exp2(-doublings.astype(float))
     inverse = shrink / values["u_noiseFinest"] * np.where(odd, const.SQRT_HALF, 1.0)
     cells = np.where(odd, values["u_noiseOriginOdd"], values["u_noiseOriginEven"])
@@ -139,7 +140,8 @@ def octave(
     spread = 1.0 - 2.0 * w * (1.0 - w)
     cell = base.astype(np.int64).astype(np.uint32)
     key = lattice.key + cell * const.AXIS_PRIMES
-    low, high = scatter(key), scatter(key + const.AXIS_PRIMES)
+    low = scatter(key)
+    high = scatter(key + const.AXIS_PRIMES)
     codes = corners(low, high)
     shine: list[Bools | None] = [None, None]
     if sparse:
@@ -179,7 +181,8 @@ class SpaceNoise(Lookup):
     """Two octaves of noise along the paths of fragments."""
 
     def __init__(self, fragments: Fragments, values: Values, *, planar: bool) -> None:
-        self._values, self._planar = values, planar
+        self._values = values
+        self._planar = planar
         self._motion: Motion | None = None
         position = fragments.position
         if fragments.normal is not None:
@@ -209,7 +212,8 @@ class SpaceNoise(Lookup):
 
         In the picture they are then as long as where the surface faces the eye.
         """
-        values, position = self._values, self._position
+        values = self._values
+        position = self._position
         if values["u_fixed"] or not values["u_lod"]:
             return np.ones(len(tangent))
         normal = unit(np.cross(position.dx, position.dy))
@@ -249,7 +253,10 @@ class SpaceNoise(Lookup):
 
     def lookup(self, displacement: Floats, length: Floats) -> Floats:
         """Both octaves, (N, 2)."""
-        motion = None if self._motion is None else self._motion.after(length)
+        if self._motion is None:
+            motion = None
+        else:
+            motion = self._motion.after(length)
         octaves = (
             octave(each, displacement, motion, planar=self._planar, sparse=self._values["sparse"])
             for each in (self._fine, self._coarse)
@@ -282,14 +289,19 @@ class ImageLookup(Lookup):
     def __init__(self, fragments: Fragments, values: Values, mips: ImageMips) -> None:
         coordinate = fragments.image
         assert coordinate is not None
-        self._mips, self._values, self._start = mips, values, coordinate.value
+        self._mips = mips
+        self._values = values
+        self._start = coordinate.value
         size, step_size = (np.asarray(values[name]) for name in ("u_imageSize", "u_stepSize"))
         self.level = mip_level(covered_texels(coordinate, size), values)
         self._inset = np.minimum(0.5 * np.exp2(np.ceil(self.level))[:, None] / size, 0.5)
         covered = covered_texels(coordinate, step_size)
         # A step must not skip a texel of the image.
         least = min(float(np.min(step_size / size)), 1.0)
-        width = np.maximum(covered, least) if values["u_lod"] else least
+        if values["u_lod"]:
+            width = np.maximum(covered, least)
+        else:
+            width = least
         step = mips.step.at(self._start, mip_level(covered, values))[:, 0]
         self.spacing = step * width * values["u_spacing"]
 
@@ -312,7 +324,9 @@ class ImageLookup(Lookup):
 def covered_texels(coordinate: Varying, size: Floats, *, longest: bool = False) -> Floats:
     """Return the width of a pixel's footprint in texels, the mean or the longest one, (N,)."""
     long, short = footprint(coordinate.dx * size, coordinate.dy * size)
-    return long if longest else np.sqrt(long * short)
+    if longest:
+        return long
+    return np.sqrt(long * short)
 
 
 def mip_level(texels: Floats, values: Values) -> Floats:

@@ -68,9 +68,11 @@ class AxisSlices(Slices):
         # The other side, from which a reversed texel is taken.
         other = np.asarray(layer) + np.where(np.asarray(layer) > self.lags, -1, 1) * self.lags
         other = np.where(np.asarray(layer) == 0, 0, other)
-        mean, result = np.zeros((len(s), 3)), np.zeros((len(s), 4))
+        mean = np.zeros((len(s), 3))
+        result = np.zeros((len(s), 4))
         for weight, right in zip(weights, ((0, 0), (1, 0), (0, 1), (1, 1)), strict=True):
-            place, finest = (base + right + 0.5) / self.size, np.zeros(len(s))
+            place = (base + right + 0.5) / self.size
+            finest = np.zeros(len(s))
             tangent = self.before.at(place, finest, 0)[:, :3]
             turned = np.einsum("nc,nc->n", mean, tangent) < 0
             sign = np.where(turned, -1.0, 1.0)[:, None]
@@ -98,10 +100,14 @@ class Path:
         first: int,
         lags: Floats,
     ) -> None:
-        self._slices, self._coordinate, self._level = slices, coordinate, level
-        self._first, self._lags = first, lags
+        self._slices = slices
+        self._coordinate = coordinate
+        self._level = level
+        self._first = first
+        self._lags = lags
         self._segment = np.zeros(len(coordinate), dtype=np.intp)
-        self.before, self._after = ends[0].copy(), ends[1].copy()
+        self.before = ends[0].copy()
+        self._after = ends[1].copy()
         self._from = np.zeros(len(coordinate))
         self._to = np.full(len(coordinate), lags[0])
 

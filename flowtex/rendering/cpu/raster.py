@@ -79,11 +79,14 @@ def rasterise(clip: Floats, triangles: Indices, size: tuple[int, int]) -> Covera
     for triangle, row, column in _candidates(edges, rows, width):
         shares = _at_pixels(edges[triangle], row, column)
         inside = (shares >= -slack[triangle]).all(axis=-1)
-        triangle, shares = triangle[inside], shares[inside]
+        triangle = triangle[inside]
+        shares = shares[inside]
         pixel = row[inside] * width + column[inside]
         depth = np.einsum("nk,nk->n", shares, depths[triangle])
         closer = depth < nearest[pixel]
-        pixel, depth, triangle = pixel[closer], depth[closer], triangle[closer]
+        pixel = pixel[closer]
+        depth = depth[closer]
+        triangle = triangle[closer]
         np.minimum.at(nearest, pixel, depth)
         first = np.flatnonzero(depth == nearest[pixel])[::-1]
         owner[pixel[first]] = triangle[first]
@@ -105,7 +108,8 @@ def _prepare(
 ) -> tuple[Indices, Floats, Floats, Indices]:
     """Return numbers of visible triangles, edges |det| M^-1 (M, 3, 3), determinants, and rows."""
     rows, seen = _rows(flat, triangles, size)
-    triangles, rows = triangles[seen], rows[seen]
+    triangles = triangles[seen]
+    rows = rows[seen]
     a, b, c = (flat[triangles[:, k]] for k in range(3))
     edges = np.stack([np.cross(b, c), np.cross(c, a), np.cross(a, b)], axis=1)
     determinant = np.einsum("nk,nk->n", edges[:, 0], a)
@@ -128,7 +132,8 @@ def _rows(flat: Floats, triangles: Indices, size: tuple[int, int]) -> tuple[Indi
     # A point behind the camera has no place in the picture; its triangle may be anywhere.
     position = np.divide(flat[:, :2], w[:, None], out=np.zeros((len(w), 2)), where=ahead[:, None])
     low, high = (np.where(ahead[:, None], position, far)[triangles] for far in (-np.inf, np.inf))
-    low, high = low.min(axis=1), high.max(axis=1)
+    low = low.min(axis=1)
+    high = high.max(axis=1)
     first = np.ceil(np.clip(low - (0.5 + ROUNDING), 0, size))
     last = np.floor(np.clip(high - (0.5 - ROUNDING), -1, np.subtract(size, 1)))
     seen = (first <= last).all(axis=-1) & ahead[triangles].any(axis=-1)
@@ -152,7 +157,10 @@ def _chunks(counts: Indices) -> Iterator[slice]:
     ends = np.cumsum(counts)
     start = 0
     while start < len(counts):
-        done = ends[start - 1] if start else 0
+        if start:
+            done = ends[start - 1]
+        else:
+            done = 0
         stop = max(int(np.searchsorted(ends, done + CHUNK, side="right")), start + 1)
         yield slice(start, stop)
         start = stop
@@ -180,5 +188,6 @@ def _columns(edges: Floats, row: Indices, width: int) -> tuple[Indices, Indices]
 
 
 def _at_pixels(edges: Floats, row: Indices, column: Indices) -> Floats:
-    x, y = (column + 0.5)[:, None], (row + 0.5)[:, None]
+    x = (column + 0.5)[:, None]
+    y = (row + 0.5)[:, None]
     return np.asarray(edges[..., 0] * x + edges[..., 1] * y + edges[..., 2])

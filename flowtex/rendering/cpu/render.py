@@ -52,7 +52,10 @@ class Picture:
         below = np.broadcast_to(np.asarray(colour, dtype=float), shape)[self.covered]
         if self.settings.show_level:
             below = level_colour(self.noise_level[self.covered])
-        lay = shade if self.value.ndim == 2 else paint
+        if self.value.ndim == 2:
+            lay = shade
+        else:
+            lay = paint
         result = np.full(shape, background, dtype=float)
         result[self.covered] = lay(below, self.value[self.covered], self.settings)
         return np.rint(result * 255.0).astype(np.uint8)
@@ -82,7 +85,8 @@ def render(
     level = slice_level(fragments.coordinate, values)
     slices = slices_at(textures, steps, values)
     make = lookup or lookup_maker(textures)
-    value, noise_level = [np.zeros((0,))], [np.zeros(0)]
+    value = [np.zeros((0,))]
+    noise_level = [np.zeros(0)]
     share = [np.zeros(0)]
     for selection, part in fragments.parts(PART):
         part_lookup = make(part, values)
@@ -131,18 +135,27 @@ def slices_at(
     ),
 ) -> Slices:
     """Return the slice texture between two destination times; ``mips`` may cache them."""
-    before, uncertain = mips(textures, steps[0]), bool(textures.geometry.field.uncertainty)
+    before = mips(textures, steps[0])
+    uncertain = bool(textures.geometry.field.uncertainty)
     if textures.geometry.field.sign_free:
-        size, lags = values["u_slicesSize"], values["u_lagCount"]
+        size = values["u_slicesSize"]
+        lags = values["u_lagCount"]
         return AxisSlices(before, uncertain=uncertain, size=size, lags=lags)
-    kind = Slices if textures.geometry.field.triangles is None else TriangleSlices
-    after = None if steps[0] == steps[1] else mips(textures, steps[1])
+    if textures.geometry.field.triangles is None:
+        kind = Slices
+    else:
+        kind = TriangleSlices
+    if steps[0] == steps[1]:
+        after = None
+    else:
+        after = mips(textures, steps[1])
     return kind(before, after, values["u_between"], uncertain=uncertain)
 
 
 def lookup_maker(textures: TextureSet) -> LookupMaker:
     """Return the look-up of the noise, or of the textures' image."""
-    image, planar = textures.image, textures.geometry.planar
+    image = textures.image
+    planar = textures.geometry.planar
     if image is None:
         return lambda fragments, values: SpaceNoise(fragments, values, planar=planar)
     mips = ImageMips(image)

@@ -42,9 +42,10 @@ def tone(value: Floats, contrast: float) -> Floats:
 
 def paint(colour: ArrayLike, picture: Floats, settings: Settings) -> Floats:
     """Lay a picture, colours times opacity and opacity (..., 4), over colours."""
-    strength = (
-        const.LEVEL_STRENGTH * settings.strength if settings.show_level else settings.strength
-    )
+    if settings.show_level:
+        strength = const.LEVEL_STRENGTH * settings.strength
+    else:
+        strength = settings.strength
     below = np.asarray(colour, dtype=float) * (1.0 - strength * picture[..., 3:])
     return np.asarray(below + strength * picture[..., :3])
 

@@ -95,7 +95,10 @@ class Summing:
     """The loop over samples of fragments; ``by_lag`` with slopes in image coordinates."""
 
     def __init__(self, slices: Slices, values: Values, lookup: Lookup, *, by_lag: bool) -> None:
-        self._slices, self._values, self._lookup, self._by_lag = slices, values, lookup, by_lag
+        self._slices = slices
+        self._values = values
+        self._lookup = lookup
+        self._by_lag = by_lag
         self._lags = np.asarray(values["u_lags"])
 
     def texture(self, coordinate: Places, level: Floats, by: Floats) -> Floats:
@@ -110,7 +113,8 @@ class Summing:
 
         Where the local mean will be subtracted, the factor has the contrast that this takes.
         """
-        values, lookup = self._values, self._lookup
+        values = self._values
+        lookup = self._lookup
         base = self._slices.layer(coordinate, 0, level)
         speed = np.linalg.norm(base[:, :3], axis=-1)
         certainty = self.certainty(coordinate, level)
@@ -141,11 +145,16 @@ class Summing:
     ) -> Floats:
         """Sines (N,) of the angles to paths half a side's length beside; < 0 where they meet."""
         in_triangles = isinstance(coordinate, TrianglePlaces)
-        cells = np.ones(2) if in_triangles else np.asarray(self._values["u_slicesSize"])
+        if in_triangles:
+            cells = np.ones(2)
+        else:
+            cells = np.asarray(self._values["u_slicesSize"])
 
         def direction(offset: Floats) -> Floats:
             tangent = unit(self._slices.layer(moved(coordinate, offset), 0, level)[:, :3])
-            return tangent if cell is None else cell.direction(tangent, offset * cells)
+            if cell is None:
+                return tangent
+            return cell.direction(tangent, offset * cells)
 
         normal = unit(np.cross(*np.moveaxis(by, 1, 0)))
         across = unit(np.cross(normal, direction(np.zeros((len(level), 2)))))
@@ -187,8 +196,14 @@ class Summing:
     def sides(self, coordinate: Places, level: Floats, base: Floats) -> Iterator[Side]:
         """Sides of the paths of N fragments, whose layer 0 is ``base``, (N, 4)."""
         speed = np.linalg.norm(base[:, :3], axis=-1)
-        scale = np.ones(len(base)) if self._by_lag else base[:, 3] * self._values["u_unit"]
-        spacing = self._lookup.spacing * speed if self._by_lag else self._lookup.spacing
+        if self._by_lag:
+            scale = np.ones(len(base))
+        else:
+            scale = base[:, 3] * self._values["u_unit"]
+        if self._by_lag:
+            spacing = self._lookup.spacing * speed
+        else:
+            spacing = self._lookup.spacing
         sides = ((-1.0, 0), (1.0, len(self._lags)))  # and the layers before their first slices
         for sign, before in sides[: self._values["u_sides"]]:
             next_ = self._slices.layer(coordinate, before + 1, level)
@@ -206,9 +221,13 @@ class Summing:
 
     def _add(self, sums: Sums, side: Side, cell: CellPath | None, count: Floats) -> None:
         """Add one side of the paths, of this many samples (N,), and where it stays in its cell."""
-        values, path, sign, scale = self._values, side.path, side.sign, side.scale
+        values = self._values
+        path = side.path
+        sign = side.sign
+        scale = side.scale
         last = np.minimum(side.reach, self._lags[-1])
-        lag, live = np.zeros(len(scale)), np.isfinite(side.reach)
+        lag = np.zeros(len(scale))
+        live = np.isfinite(side.reach)
         if cell is not None:
             cell.leave()
         step = side.step(lag)

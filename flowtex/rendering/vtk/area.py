@@ -41,7 +41,8 @@ class PassArea:
     @classmethod
     def of(cls, renderer: pv.Renderer, part: PicturePart | None, margin: int) -> PassArea:
         """Return the area of a renderer whose frame may be a part of a picture."""
-        window, camera = renderer.GetRenderWindow(), renderer.GetActiveCamera()
+        window = renderer.GetRenderWindow()
+        camera = renderer.GetActiveCamera()
         corner, size = part_of(window, renderer)
         if part is None:
             margin = 0
@@ -84,7 +85,8 @@ def tile_of(window: vtkOpenGLRenderWindow) -> PicturePart | None:
 
 def part_of(window: vtkOpenGLRenderWindow, renderer: pv.Renderer) -> tuple[Ints, Ints]:
     """Return corner and size of a renderer in the pixels of the window's present part, (2,)."""
-    whole, tile = np.array(window.GetSize()), np.reshape(window.GetTileViewport(), (2, 2))
+    whole = np.array(window.GetSize())
+    tile = np.reshape(window.GetTileViewport(), (2, 2))
     shown = np.clip(np.reshape(renderer.GetViewport(), (2, 2)), tile[0], tile[1]) - tile[0]
     low, high = np.floor(shown * whole + 0.5).astype(int)
     return low, high - low

@@ -121,8 +121,10 @@ def lookup_table(scale: ColourScale) -> pv.LookupTable:
         table = NormTable(values=np.rint(values).astype(np.uint8))
         table.texels = scale.texels
         table.marks = {place: text for _, place, text in scale.marks}
-    table.log_scale, table.scalar_range = scale.log_scale, (scale.low, scale.high)
-    table.below_range_color, table.above_range_color = scale.below, scale.above
+    table.log_scale = scale.log_scale
+    table.scalar_range = (scale.low, scale.high)
+    table.below_range_color = scale.below
+    table.above_range_color = scale.above
     table.nan_color = scale.nan
     return table
 
@@ -140,8 +142,14 @@ class MappedColours(NamedTuple):
     @classmethod
     def of(cls, mapper: vtkMapper, mesh: pv.PolyData, flat: str | None) -> MappedColours | None:
         """Return the colours of a mapper, if a table gives them; ``flat`` is the array on cells."""
-        name = mapper.GetArrayName() if mapper.GetScalarVisibility() else None
-        values = mesh.GetPointData().GetArray(name) if name else None
+        if mapper.GetScalarVisibility():
+            name = mapper.GetArrayName()
+        else:
+            name = None
+        if name:
+            values = mesh.GetPointData().GetArray(name)
+        else:
+            values = None
         table = mapper.GetLookupTable()
         uses_table_range = mapper.GetUseLookupTableScalarRange()
         low, high = table.GetRange() if uses_table_range else mapper.GetScalarRange()
@@ -169,9 +177,13 @@ class MappedColours(NamedTuple):
         if isinstance(self.table, NormTable):
             return self.table.texels[None, None]
         count = max(int(self.table.GetNumberOfAvailableColors()), 1)
-        low, high = self._scaled(self.low), self._scaled(self.high)
+        low = self._scaled(self.low)
+        high = self._scaled(self.high)
         places = low + (np.arange(-1, count + 1) + 0.5) / count * (high - low)
-        inside = 10**places if self.table.UsingLogScale() else places
+        if self.table.UsingLogScale():
+            inside = 10**places
+        else:
+            inside = places
         self.table.SetRange(self.low, self.high)
         self.table.BuildSpecialColors()  # which VTK does only when it draws
         values = numpy_to_vtk(np.append(inside, np.nan), deep=True)

@@ -108,5 +108,6 @@ class Rectangle:
         window.GetState().vtkglViewport(0, 0, width, height)
         # VTK draws it narrower by up to a pixel; the depths of what is beside it are others.
         left, right, low, high = box or (0, width, 0, height)
-        first, last = max(left - 1, 0), max(low - 1, 0)
+        first = max(left - 1, 0)
+        last = max(low - 1, 0)
         target.frame.RenderQuad(first, right, last, high, self.program, self._vertices)

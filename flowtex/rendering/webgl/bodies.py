@@ -78,7 +78,8 @@ class Bodies:
                     "diffuse": float(body.diffuse),
                 }
             )
-            face, piece = face + len(body.faces), piece + len(body.pieces)
+            face = face + len(body.faces)
+            piece = piece + len(body.pieces)
         return {
             "runs": runs,
             "labels": [asdict(label) for label in self.labels],

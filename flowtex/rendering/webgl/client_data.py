@@ -116,11 +116,15 @@ class ClientData:
     @cached_property
     def formula(self) -> Formula | None:
         """The formula that is sent in place of the velocity."""
-        return client_formula(self.textures) if self.traced and self.pyramid is None else None
+        if self.traced and self.pyramid is None:
+            return client_formula(self.textures)
+        return None
 
     @property
     def _parameters(self) -> list[Header]:
-        return [] if self.formula is None else parameter_rows(self.formula)
+        if self.formula is None:
+            return []
+        return parameter_rows(self.formula)
 
     @cached_property
     def packing(self) -> Packing:
@@ -148,7 +152,9 @@ class ClientData:
     def times(self) -> Floats:
         """Destination times, (steps,), in the field's own unit."""
         times = self.textures.geometry.field.times
-        return times[list(self.chosen)] if self.chosen else times
+        if self.chosen:
+            return times[list(self.chosen)]
+        return times
 
     def first_camera(self, aspect: float = FIRST_ASPECT) -> Camera:
         """Return the camera that shows the whole surface in a picture of a shape."""
@@ -222,7 +228,8 @@ class ClientData:
 
     def surface(self) -> Parts:
         """Return the arrays that are the same at all times, the smallest first."""
-        geometry, colours = self.textures.geometry, self.colours
+        geometry = self.textures.geometry
+        colours = self.colours
         parts: Parts = {}
         if len(colours.scale.table) and (colours.choices or colours.name is not None):
             parts["cmap"] = colours.scale.part
@@ -247,7 +254,8 @@ class ClientData:
             parts["step"], parts["image"] = half(image.step), half(image.texels)
         if self.bodies is not None:
             parts |= self.bodies.parts(geometry)
-        land, tiled = colours.land is not None, self.pyramid is not None
+        land = colours.land is not None
+        tiled = self.pyramid is not None
         return {**parts, **earth_parts(geometry, has_land=land, tiled=tiled)}
 
     def step(self, step: int) -> Parts:
@@ -283,8 +291,14 @@ class ClientData:
             return parts
         for number, values in self._values.items():
             if not shown or number == self.colours.number:
-                source = step if len(values) > 1 else 0
-                name = f"scalars/{source}/{number}" if number else f"scalars/{source}"
+                if len(values) > 1:
+                    source = step
+                else:
+                    source = 0
+                if number:
+                    name = f"scalars/{source}/{number}"
+                else:
+                    name = f"scalars/{source}"
                 parts[name] = single(values[source])
         return parts
 
@@ -300,7 +314,9 @@ class ClientData:
 
     @property
     def _depth(self) -> int:
-        return self.depth if self.pyramid is None else self.pyramid.depth
+        if self.pyramid is None:
+            return self.depth
+        return self.pyramid.depth
 
     @cached_property
     def tile_header(self) -> Header:
@@ -309,12 +325,17 @@ class ClientData:
 
     def source(self, step: int) -> int:
         """Return the field's own number of a step that is sent."""
-        return self.chosen[step] if self.chosen else step
+        if self.chosen:
+            return self.chosen[step]
+        return step
 
     def moment(self, time: float) -> tuple[int, ...]:
         """Return the steps that are needed to show a time, one or two."""
         before, after, _ = steps_around(self.times, time)
-        shown = (before,) if before == after else (before, after)
+        if before == after:
+            shown = (before,)
+        else:
+            shown = (before, after)
         if not self.traced or self.textures.store.streamlines:
             return shown
         around = (velocity.steps_around(self.textures, step) for step in shown)
@@ -329,7 +350,8 @@ class ClientData:
             values[colours.number] = colours.values
         flat = {n for n, choice in enumerate(colours.choices) if choice.get("flat")}
         flat |= {colours.number} if colours.flat else set()
-        steps, drawn = list(self.chosen) or slice(None), self.textures.geometry.drawn_values
+        steps = list(self.chosen) or slice(None)
+        drawn = self.textures.geometry.drawn_values
         return {
             number: drawn(nodal[steps if len(nodal) > 1 else slice(None)], on_cells=number in flat)
             for number, nodal in values.items()

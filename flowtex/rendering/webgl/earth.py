@@ -51,7 +51,8 @@ def earth_header(geometry: DrawnSurface, *, has_land: bool) -> Header | None:
     field = geometry.field
     if field.projection is None:
         return None
-    is_globe, lines = field.projection.is_globe, _lines_of(geometry, has_land=has_land)
+    is_globe = field.projection.is_globe
+    lines = _lines_of(geometry, has_land=has_land)
     return {
         "radius": EARTH_RADIUS,
         "below": globe_radius(field) is not None,
@@ -93,7 +94,10 @@ def dates_of(field: FlowField, times: Floats) -> Header:
     start = field.start
     if start is None:
         return {"start": None, "dates": [], "step": 0.0}
-    step = float(np.diff(field.times).min()) if len(field.times) > 1 else 1.0
+    if len(field.times) > 1:
+        step = float(np.diff(field.times).min())
+    else:
+        step = 1.0
     if getattr(start, "calendar", "proleptic_gregorian") in ("proleptic_gregorian", "standard"):
         return {"start": start.isoformat()[:23], "dates": [], "step": step}
     dates = [date_text(start, float(time), step) for time in times]
@@ -113,7 +117,8 @@ def _lines_of(geometry: DrawnSurface, *, has_land: bool) -> _Lines:
             k: (v.points - geometry.center) @ geometry.frame.T for k, v in lines_by_option.items()
         }
         points = np.concatenate([*local.values(), np.zeros((1, 3))])
-        low, size = points.min(axis=0), np.ptp(points, axis=0)
+        low = points.min(axis=0)
+        size = np.ptp(points, axis=0)
         parts = {
             name: _packed(lines, (local[name] - low) / np.where(size > 0, size, 1.0))
             for name, lines in lines_by_option.items()

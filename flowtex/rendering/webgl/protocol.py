@@ -58,7 +58,8 @@ def parts_file(parts: Mapping[str, AnyArray], *, planes: bool = False) -> bytes:
     It is the length of the descriptions as four bytes, the descriptions in JSON with the number of
     bytes of each part, and the arrays one after the other.
     """
-    infos, buffers = [], []
+    infos = []
+    buffers = []
     for name, array in parts.items():
         packing, buffer = _packed(array) if planes and array.ndim > 1 else ({}, part_buffer(array))
         infos.append({**part_info(name, array), "bytes": array.nbytes, **packing})

@@ -70,10 +70,22 @@ class Packing:
 
     def __init__(self, textures: TextureSet) -> None:
         self._textures = textures
-        self.channels = 2 if textures.geometry.planar or textures.image is not None else 4
-        unknown = [UNCERTAIN_LAYER] if textures.geometry.field.uncertainty else []
-        ahead = [len(textures.lags) + n for n in (1, *unknown)] if textures.sides == 2 else []
-        last = [textures.count - 1] if textures.in_cells else []
+        if textures.geometry.planar or textures.image is not None:
+            self.channels = 2
+        else:
+            self.channels = 4
+        if textures.geometry.field.uncertainty:
+            unknown = [UNCERTAIN_LAYER]
+        else:
+            unknown = []
+        if textures.sides == 2:
+            ahead = [len(textures.lags) + n for n in (1, *unknown)]
+        else:
+            ahead = []
+        if textures.in_cells:
+            last = [textures.count - 1]
+        else:
+            last = []
         self.extra = [0, 1, 2, *unknown, *ahead, *last]
         self._steps: ByteCache[int, PackedStep] = ByteCache(CACHE_BYTES, min_count=LEAST_STEPS)
 
@@ -108,7 +120,8 @@ def half(values: AnyArray) -> Halves:
 
 def can_trace(textures: TextureSet) -> bool:
     """Return whether a client can trace a flow: on a structured surface, with signs."""
-    field, store = textures.geometry.field, textures.store
+    field = textures.geometry.field
+    store = textures.store
     structured = isinstance(textures.geometry, SurfaceGeometry) and textures.image is None
     if not structured or field.sign_free or store.given:
         return False
@@ -120,7 +133,8 @@ def can_trace(textures: TextureSet) -> bool:
 
 def steps_around(textures: TextureSet, step: int) -> list[int]:
     """Return the steps whose flow a client traces the slices of a step from."""
-    store, times = textures.store, textures.geometry.field.times
+    store = textures.store
+    times = textures.geometry.field.times
     if store.streamlines:
         return [step]
     reach = float(store.lags[-1] * store.unit.flat[0])
@@ -203,7 +217,8 @@ def _middle(textures: TextureSet, unit: float) -> Floats:
 def surface_parts(textures: TextureSet, depth: int) -> Parts:
     """Return the arrays of the nodes at all times, multiples of powers of two, by the depth."""
     geometry = textures.grid
-    surface, unit = geometry.surface, _position_unit(textures, depth)
+    surface = geometry.surface
+    unit = _position_unit(textures, depth)
     parts: Parts = {"unit": half(_sizes(textures) / _size(textures))}
     padded = (surface.padded - geometry.center) @ geometry.frame.T - _middle(textures, unit)
     unit = max(unit, np.ldexp(1.0, int(np.frexp(np.abs(padded).max())[1]) - 24))
@@ -232,7 +247,9 @@ def velocity_part(textures: TextureSet, step: int) -> AnyArray:
     :func:`shown_speed` has it; and the uncertainty.
     """
     field = textures.geometry.field.at_step(step)
-    flow, valid, typical = field.index_velocity, field.valid, textures.typical_speed
+    flow = field.index_velocity
+    valid = field.valid
+    typical = textures.typical_speed
     speed = fill_blanked(np.asarray(flow.speed[0]), valid)
     components = fill_blanked(np.asarray(flow.components[0]), valid)
     rate = np.zeros_like(components)
@@ -267,7 +284,9 @@ def client_formula(textures: TextureSet) -> Formula | None:
     if any(each.tree is None for each in formula.expressions):
         return None
     same = all(formula_rates(field.at_step(n)) for n in {0, len(field.times) - 1})
-    return formula if same else None
+    if same:
+        return formula
+    return None
 
 
 def formula_header(formula: Formula, shape: tuple[int, int]) -> Header:

@@ -30,17 +30,23 @@ def bilinear_zeros(corners: Floats) -> tuple[Indices, Floats]:
     cells = np.flatnonzero(crossed)
     v = corners[cells]
     v = v / np.maximum(np.abs(v).max(axis=(1, 2), keepdims=True), np.finfo(float).tiny)
-    a, b, c = v[:, 0], v[:, 1] - v[:, 0], v[:, 2] - v[:, 0]
+    a = v[:, 0]
+    b = v[:, 1] - v[:, 0]
+    c = v[:, 2] - v[:, 0]
     d = v[:, 3] - v[:, 2] - b
-    numbers, places = [], []
+    numbers = []
+    places = []
     # v = a + b s + c t + d s t is zero where (a + b s) and (c + d s) are parallel.
-    square, linear, constant = _cross(b, d), _cross(a, d) + _cross(b, c), _cross(a, c)
+    square = _cross(b, d)
+    linear = _cross(a, d) + _cross(b, c)
+    constant = _cross(a, c)
     with np.errstate(invalid="ignore", divide="ignore"):
         q = -0.5 * (linear + np.copysign(np.sqrt(linear * linear - 4 * square * constant), linear))
         roots = q / square, constant / q
     for s in roots:
         with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
-            first, slope = a + b * s[:, None], c + d * s[:, None]
+            first = a + b * s[:, None]
+            slope = c + d * s[:, None]
             t = -np.einsum("nc,nc->n", first, slope) / np.einsum("nc,nc->n", slope, slope)
         inside = _inside(s) & _inside(t)
         numbers.append(cells[inside])
@@ -122,7 +128,8 @@ def strengths(field: FlowField, nodes: Indices, signs: Indices, steepness: Float
     may lie beyond a border, that for any other remaining point. ``nodes`` lie beside the points,
     and ``signs`` are their Poincare indices. Where several have one partner, the steepest remain.
     """
-    speed, valid = field.index_velocity.speed[0].ravel(), field.valid.ravel()
+    speed = field.index_velocity.speed[0].ravel()
+    valid = field.valid.ravel()
     result = np.full(len(nodes), float(speed[valid].max(initial=0.0)))
     if len(nodes) < 2:
         return result
@@ -136,8 +143,10 @@ def strengths(field: FlowField, nodes: Indices, signs: Indices, steepness: Float
     edges = edges[valid[edges].all(axis=1)]
     needed = speed[edges].max(axis=1)
     order = np.argsort(needed)
-    edges, needed = edges[order], needed[order]
-    remaining, met = np.argsort(-steepness), np.zeros(len(nodes), dtype=bool)
+    edges = edges[order]
+    needed = needed[order]
+    remaining = np.argsort(-steepness)
+    met = np.zeros(len(nodes), dtype=bool)
     for level in np.quantile(speed[valid], SHARES):
         slower = edges[: int(np.searchsorted(needed, level, side="right"))]
         graph = scipy.sparse.coo_array(
@@ -147,7 +156,8 @@ def strengths(field: FlowField, nodes: Indices, signs: Indices, steepness: Float
         regions = region[nodes[remaining]].astype(np.intp)
         paired = _paired(regions, signs[remaining])
         result[remaining[paired]] = level
-        remaining, regions = remaining[~paired], regions[~paired]
+        remaining = remaining[~paired]
+        regions = regions[~paired]
         meets = (np.bincount(regions, minlength=1)[regions] > 1) & ~met[remaining]
         result[remaining[meets]], met[remaining[meets]] = level, True
     return result

@@ -48,7 +48,10 @@ LEAST_SHARE = 1e-7  #: Share of a neighbour's velocity that replaces one that is
 
 def steady_parts(field: FlowField, steps: Sequence[int] | None, text: str) -> Iterator[FlowField]:
     """Return the fields of some time steps, or of all, with a progress bar of this text."""
-    numbers = range(len(field.times)) if steps is None else [field.step_number(n) for n in steps]
+    if steps is None:
+        numbers = range(len(field.times))
+    else:
+        numbers = [field.step_number(n) for n in steps]
     return map(field.at_step, track(numbers, len(numbers), text))
 
 
@@ -217,9 +220,11 @@ def _of_formula(field: FlowField, rates: Rates) -> list[CriticalPoint]:
     found = zeros(rates)
     if found.lines:
         notify(f"{field.name}: the velocity is zero along lines; points there are not marked")
-    places, low = found.places, rates.ends[:, 0]
+    places = found.places
+    low = rates.ends[:, 0]
     index = (places - low) / np.ptp(rates.ends, axis=1) * np.subtract(field.shape[::-1], 1)
-    position, tangents = rates.positions(places), rates.tangents(places)
+    position = rates.positions(places)
+    tangents = rates.tangents(places)
     points = _points(field, position, found.gradient, tangents, index, found=found)
     for n in np.flatnonzero(found.is_degenerate):
         ways, leaves = directions(rates, places[n])
@@ -232,12 +237,15 @@ def _of_formula(field: FlowField, rates: Rates) -> list[CriticalPoint]:
         points = [point for point, is_kept in zip(points, away, strict=True) if is_kept]
         points += _resolved(_distinct(_at_pole(field, pole), field), field)
         index = np.array([point.index[::-1] for point in points]).reshape(-1, 2)
-    return _distinct(points, field) if any(field.periodic) else points
+    if any(field.periodic):
+        return _distinct(points, field)
+    return points
 
 
 def _on_grid(field: FlowField) -> list[CriticalPoint]:
     u = field.index_velocity.components[0]
-    speed, corners = field.index_velocity.speed[0], field.surface.cell_corners
+    speed = field.index_velocity.speed[0]
+    corners = field.surface.cell_corners
     rest = speed <= REST_SHARE * speed.max(initial=0)
     usable = field.surface.cells.copy()
     # A single node at rest may be a critical point; several are a wall or a region at rest.
@@ -247,11 +255,16 @@ def _on_grid(field: FlowField) -> list[CriticalPoint]:
     usable &= ~np.logical_or.reduce([several[c] for c in corners])
     poles = tuple(field.surface.poles or ())
     for pole in poles:
-        lines = usable if pole.component else usable.T
+        if pole.component:
+            lines = usable
+        else:
+            lines = usable.T
         lines[0 if pole.inward > 0 else -1] = False
     j, i = np.nonzero(usable)
     cell, place = bilinear_zeros(np.stack([u[c][j, i] for c in corners], axis=1))
-    j, i, (s, t) = j[cell], i[cell], place.T
+    j = j[cell]
+    i = i[cell]
+    (s, t) = place.T
     at = [u[j + a, i + b] for a in (0, 1) for b in (0, 1)]
     by_i = (at[1] - at[0]) * (1 - t[:, None]) + (at[3] - at[2]) * t[:, None]
     by_j = (at[2] - at[0]) * (1 - s[:, None]) + (at[3] - at[1]) * s[:, None]
@@ -275,7 +288,8 @@ def _at_pole(field: FlowField, pole: Pole) -> list[CriticalPoint]:
     flow = field.velocity[0] - (field.velocity[0] * normal).sum(axis=-1, keepdims=True) * normal
     points, velocity = (pole.lines(a) for a in (field.points, flow))
     ring = pole.line + pole.inward
-    center, near = points[pole.line, 0], points[ring]
+    center = points[pole.line, 0]
+    near = points[ring]
     plane = (near - center) @ pole.plane.T
     vectors = velocity[ring] @ pole.plane.T
     middle = velocity[pole.line, :-1].mean(axis=0) @ pole.plane.T
@@ -357,13 +371,20 @@ def _points(
     finite = np.isfinite(gradient).all(axis=(1, 2))
     finite &= (np.abs(gradient).max(axis=(1, 2)) > 0) | (found is not None)
     values, vectors = np.linalg.eig(np.where(finite[:, None, None], gradient, np.eye(2)))
-    lonlat = None if field.projection is None else field.projection.lonlat(position)
+    if field.projection is None:
+        lonlat = None
+    else:
+        lonlat = field.projection.lonlat(position)
     result = []
     for n in np.flatnonzero(finite):
         order = np.argsort(-values[n].real, kind="stable")
-        value, directions = values[n][order].astype(complex), vectors[n].T[order] @ tangents[n]
+        value = values[n][order].astype(complex)
+        directions = vectors[n].T[order] @ tangents[n]
         size = np.linalg.norm(directions, axis=1, keepdims=True)
-        place = None if lonlat is None else (float(lonlat[0][n]), float(lonlat[1][n]))
+        if lonlat is None:
+            place = None
+        else:
+            place = (float(lonlat[0][n]), float(lonlat[1][n]))
         kind = _kind(value, 0.0 if found is None else float(found.growth[n]))
         if found is not None and found.is_degenerate[n]:
             kind = "degenerate"
@@ -385,14 +406,24 @@ def _points(
 
 def _kind(values: AnyArray, growth: float = 0.0, error: float = 0.0) -> str:
     """Return the kind by eigenvalues known to an error, else by the growth in a turn."""
-    real, imaginary, size = values.real, abs(values[0].imag), np.abs(values).max()
+    real = values.real
+    imaginary = abs(values[0].imag)
+    size = np.abs(values).max()
     if imaginary <= REAL_SHARE * size:
         if np.abs(values).min() <= ROUNDING * size:
             return "degenerate"
-        return "saddle" if real[0] * real[1] < 0 else "source" if real.sum() > 0 else "sink"
+        if real[0] * real[1] < 0:
+            return "saddle"
+        if real.sum() > 0:
+            return "source"
+        return "sink"
     if abs(real[0]) > max(error, ROUNDING * size):
         growth = float(real[0])
-    return "spiral source" if growth > 0 else "spiral sink" if growth < 0 else "centre"
+    if growth > 0:
+        return "spiral source"
+    if growth < 0:
+        return "spiral sink"
+    return "centre"
 
 
 def gradient_and_error(field: FlowField) -> tuple[Floats, Floats]:
@@ -473,7 +504,8 @@ def _ring_index(field: FlowField, point: CriticalPoint) -> int:
     rows, columns = np.array(
         [(-1, -1), (-1, 0), (-1, 1), (0, 1), (1, 1), (1, 0), (1, -1), (0, -1)]
     ).T
-    rows, columns = rows + j, columns + i
+    rows = rows + j
+    columns = columns + i
     inside = (rows >= 0) & (rows < field.shape[0]) & (columns >= 0) & (columns < field.shape[1])
     if not inside.all():
         return 0
@@ -488,7 +520,8 @@ def _with_strength(points: list[CriticalPoint], field: FlowField) -> list[Critic
     signs = np.array([point.poincare_index for point in points], dtype=np.intp)
     steepness = np.array([abs(np.prod(point.eigenvalues)) for point in points])
     # A point of index 0 needs no partner to vanish.
-    found, paired = np.zeros(len(points)), signs != 0
+    found = np.zeros(len(points))
+    paired = signs != 0
     found[paired] = strengths(
         field, np.array(nodes, dtype=np.intp)[paired], signs[paired], steepness[paired]
     )

@@ -63,17 +63,21 @@ WINDOW_STEPS = 4  #: Steps of the middle of a window per size.
 
 def formula_rates(field: FlowField) -> Rates | None:
     """Return the rates of the formula from which a steady field was made, if they are known."""
-    formula, valid = field.formula, field.valid
+    formula = field.formula
+    valid = field.valid
     if formula is None or field.triangles is not None:
         return None
     u, v = formula.coordinates(field.shape)
-    points, velocity = formula.points(u, v), formula.velocity(u, v, float(field.times[0]))
+    points = formula.points(u, v)
+    velocity = formula.velocity(u, v, float(field.times[0]))
     for own, other in ((field.points, points), (field.velocity[0], velocity)):
         flat = np.zeros((*field.shape, 3 - other.shape[-1]))
         if not np.allclose(own[valid], np.concatenate([other, flat], axis=-1)[valid]):
             return None
     rates = Rates(formula, float(field.times[0]))
-    return rates if rates.is_known else None
+    if rates.is_known:
+        return rates
+    return None
 
 
 class Zeros(NamedTuple):
@@ -99,13 +103,17 @@ def zeros(rates: Rates) -> Zeros:
         inside = (np.abs(found - np.clip(found, *rates.ends.T)) <= BEYOND * cell).all(axis=1)
     area = rates.area(np.concatenate([rates.ends.mean(axis=1)[None], found]))
     inside &= area[1:] > POLE_AREA * area[0]
-    places, scale = np.clip(found[inside], *rates.ends.T), scale[inside]
+    places = np.clip(found[inside], *rates.ends.T)
+    scale = scale[inside]
     degenerate = _are_degenerate(rates, places, scale, cell)
     kept = _distinct(places / cell, degenerate, left[inside])
-    places, scale, degenerate = places[kept], scale[kept], degenerate[kept]
+    places = places[kept]
+    scale = scale[kept]
+    degenerate = degenerate[kept]
     on_line = degenerate.copy()
     on_line[degenerate] = _on_lines(rates, places[degenerate], scale[degenerate], cell)
-    places, degenerate = places[~on_line], degenerate[~on_line]
+    places = places[~on_line]
+    degenerate = degenerate[~on_line]
     places[np.abs(places) < LEFT * cell] = 0.0
     gradient = rates.lowered(rates.gradient(places), places)
     indices = np.sign(np.linalg.det(gradient)).astype(np.intp)
@@ -119,7 +127,8 @@ def zeros(rates: Rates) -> Zeros:
         turns = (angle[-1] - angle[0]) / (2 * np.pi)
         indices[n] = round(turns) if np.isfinite(turns) else 0
     growth = np.zeros(len(places))
-    trace, size = np.trace(gradient, axis1=1, axis2=2), np.abs(gradient).max(axis=(1, 2), initial=0)
+    trace = np.trace(gradient, axis1=1, axis2=2)
+    size = np.abs(gradient).max(axis=(1, 2), initial=0)
     turning = (indices == 1) & ~degenerate & (np.abs(trace) <= ROUNDING * size)
     radius = np.minimum(TURN_RADIUS, 0.2 * free[turning])
     growth[turning] = _growth(rates, places[turning], gradient[turning], radius, cell)
@@ -156,7 +165,8 @@ def _step(rates: Rates, at: Floats, scale: Floats, cell: Floats) -> tuple[Floats
     """Return the largest rate (N,), Newton's step (N, 2), and the determinant's share (N,)."""
     value = rates.at(at) / scale
     (a, b), (c, d) = np.moveaxis(rates.gradient(at) * cell / scale[..., None], 0, -1)
-    size, determinant = a * a + b * b + c * c + d * d, a * d - b * c
+    size = a * a + b * b + c * c + d * d
+    determinant = a * d - b * c
     with np.errstate(all="ignore"):
         u, v = value.T
         step = np.stack([b * v - d * u, c * u - a * v], axis=-1) / determinant[:, None]
@@ -169,8 +179,10 @@ def _step(rates: Rates, at: Floats, scale: Floats, cell: Floats) -> tuple[Floats
 
 def _newton(rates: Rates, start: Floats, scale: Floats, cell: Floats) -> tuple[Floats, Floats]:
     """Return the nearest zero of each place (N, 2), NaN if none is near, and the rates left."""
-    best, least = np.full(start.shape, np.nan), np.full(len(start), np.inf)
-    at, going = start.copy(), np.arange(len(start))
+    best = np.full(start.shape, np.nan)
+    least = np.full(len(start), np.inf)
+    at = start.copy()
+    going = np.arange(len(start))
     for _ in range(STEPS):
         left, step, _ = _step(rates, at[going], scale[going], cell)
         better = left < least[going]
@@ -209,8 +221,12 @@ def _distinct(places: Floats, degenerate: Bools, left: Floats) -> Indices:
     if len(places):
         pairs = scipy.spatial.KDTree(places[order]).query_pairs(SAME_DEGENERATE)
         for first, second in sorted(pairs):
-            one, other = order[first], order[second]
-            apart = SAME_DEGENERATE if degenerate[one] else SAME
+            one = order[first]
+            other = order[second]
+            if degenerate[one]:
+                apart = SAME_DEGENERATE
+            else:
+                apart = SAME
             if kept[one] and kept[other]:
                 kept[other] = np.abs(places[one] - places[other]).max() >= apart
     return np.flatnonzero(kept)
@@ -251,11 +267,13 @@ def directions(rates: Rates, place: Floats) -> tuple[Floats, Bools]:
     first = np.flatnonzero(across[:-1] * across[1:] < 0)
     if not 0 < len(first) <= MOST_DIRECTIONS:
         return np.empty((0, 2)), np.empty(0, dtype=bool)
-    low, high = angle[first], angle[first + 1]
+    low = angle[first]
+    high = angle[first + 1]
     for _ in range(50):
         middle = 0.5 * (low + high)
         is_low = radial(middle)[0] * across[first] > 0
-        low, high = np.where(is_low, middle, low), np.where(is_low, high, middle)
+        low = np.where(is_low, middle, low)
+        high = np.where(is_low, high, middle)
     leaves = radial(low)[1] > 0
     kept = (leaves != np.roll(leaves, 1)) | (leaves != np.roll(leaves, -1))
     return np.stack([np.cos(low), np.sin(low)], axis=-1)[kept], leaves[kept]
@@ -273,7 +291,8 @@ def _growth(rates: Rates, places: Floats, gradient: Floats, radius: Floats, cell
         u, v = rates.lowered(rates.at(at), at).T
         return np.stack([u, (a * u + b * v) / turn], axis=-1)
 
-    w, step = np.stack([radius, 0 * radius], axis=-1), 2 * np.pi / TURN_STEPS / turn
+    w = np.stack([radius, 0 * radius], axis=-1)
+    step = 2 * np.pi / TURN_STEPS / turn
     with np.errstate(all="ignore"):
         for n in range(TURN_STEPS + 4):
             if n >= TURN_STEPS:  # to the ray from which it began
@@ -294,7 +313,9 @@ def runge_kutta(rate: Callable[[Floats], Floats], at: Floats, step: Any) -> Floa
 def plane_rates(field: FlowField) -> Rates | None:
     """Return the rates of a formula in the plane, if that is how a steady field was made."""
     is_plane = field.formula is not None and not field.formula.surface
-    return formula_rates(field) if is_plane else None
+    if is_plane:
+        return formula_rates(field)
+    return None
 
 
 def follower(field: FlowField, rates: Rates | None) -> Callable[..., Paths]:
@@ -314,17 +335,23 @@ def formula_paths(
     within: Callable[[Floats], Bools] | None = None,
 ) -> Paths:
     """Follow lines from (N, 2), as (i, j) of nodes, to lengths (M,), as :func:`paths` does."""
-    low, sides = rates.ends[:, 0], np.ptp(rates.ends, axis=1)
+    low = rates.ends[:, 0]
+    sides = np.ptp(rates.ends, axis=1)
     cell = sides / np.subtract(shape[::-1], 1)
 
     def rate(at: Floats) -> Floats:
         value = rates.at(at)
         with np.errstate(invalid="ignore", divide="ignore"):
-            sign = 1.0 if forward else -1.0
+            if forward:
+                sign = 1.0
+            else:
+                sign = -1.0
             return np.asarray(sign * value / np.linalg.norm(value, axis=1, keepdims=True))
 
-    at, before = low + begin * cell, 0.0
-    positions, reach = np.empty((len(lags), *begin.shape)), np.full(len(begin), np.inf)
+    at = low + begin * cell
+    before = 0.0
+    positions = np.empty((len(lags), *begin.shape))
+    reach = np.full(len(begin), np.inf)
     for n, lag in enumerate(lags):
         if np.isfinite(reach).all():
             positions[n:] = positions[n - 1]
@@ -354,7 +381,8 @@ def formula_orbit(
     place moves along a section across the flow, by Newton's method with the growth of distances in
     a turn: the divergence, integrated over its time. Where it is 0, all lines close.
     """
-    diagonal, way = np.hypot(*np.ptp(rates.ends, axis=1)), 1.0 if forward else -1.0
+    diagonal = np.hypot(*np.ptp(rates.ends, axis=1))
+    way = 1.0 if forward else -1.0
     normal = rates.at(start[None])[0] * way
     normal /= np.linalg.norm(normal)
     section = np.array([-normal[1], normal[0]])
@@ -403,14 +431,16 @@ def nullclines(field: FlowField, window: Floats | None = None) -> tuple[Floats, 
     its poles, and finer in a ``window``, (2, 2) as the ends of x and y. Returns the straight pieces
     of both lines, (S, 2, 3) each, in no order.
     """
-    surface, rates = field.surface, plane_rates(field)
+    surface = field.surface
+    rates = plane_rates(field)
     if surface.frame is None:
         return np.empty((0, 2, 3)), np.empty((0, 2, 3))
     if rates is not None:
         coarse = _of_formula(rates, rates.ends)
         if window is None:
             return coarse
-        middle, half = window.mean(axis=1), np.ptp(window, axis=1) / 2
+        middle = window.mean(axis=1)
+        half = np.ptp(window, axis=1) / 2
         one, two = (
             np.concatenate([p[(abs(p.mean(axis=1)[:, :2] - middle) > half).any(axis=1)], q])
             for p, q in zip(coarse, _of_formula(rates, window), strict=True)
@@ -440,7 +470,9 @@ def view_window(field: FlowField, focus: Floats, visible: float) -> Floats | Non
     step = size / WINDOW_STEPS
     middle = ends[:, 0] + step * np.rint((focus[:2] - ends[:, 0]) / step)
     window = np.clip(np.stack([middle - size / 2, middle + size / 2], axis=1), *ends.T[..., None])
-    return window if (np.ptp(window, axis=1) > 0).all() else None
+    if (np.ptp(window, axis=1) > 0).all():
+        return window
+    return None
 
 
 def _of_formula(rates: Rates, window: Floats) -> tuple[Floats, Floats]:
@@ -449,7 +481,10 @@ def _of_formula(rates: Rates, window: Floats) -> tuple[Floats, Floats]:
     x, y = (np.linspace(window[k, 0], window[k, 1], counts[k] + 1) for k in range(2))
     nodes = np.stack([*np.meshgrid(x, y), np.zeros((len(y), len(x)))], axis=-1)
     number = np.arange(len(x) * len(y)).reshape(len(y), len(x))
-    a, b, c, d = number[:-1, :-1], number[:-1, 1:], number[1:, :-1], number[1:, 1:]
+    a = number[:-1, :-1]
+    b = number[:-1, 1:]
+    c = number[1:, :-1]
+    d = number[1:, 1:]
     corners = np.concatenate([np.stack(t, axis=-1).reshape(-1, 3) for t in ((a, b, d), (a, d, c))])
     points = nodes.reshape(-1, 3)
     values = rates.at(points[:, :2])
@@ -482,22 +517,28 @@ def _crossing(rates: Rates, component: int, sides: Floats) -> tuple[Floats, Bool
 
 def _zero_pieces(points: Floats, values: Floats) -> tuple[Floats, Floats]:
     """Return pieces (S, 2, 3) where values (M, 3) are zero, and their sides (S, 2, 2, 3)."""
-    least = ZERO_SHARE * np.quantile(np.abs(values), USUAL_SHARE) if len(values) else 0.0
+    if len(values):
+        least = ZERO_SHARE * np.quantile(np.abs(values), USUAL_SHARE)
+    else:
+        least = 0.0
     differs = np.abs(values) > least
     # A side along which the component is zero is a piece, perhaps a wall with one triangle.
     is_side = differs.sum(axis=1) == 1
     above = np.where(is_side[:, None], differs, values > least)
     count = above.sum(axis=1)
     crossed = np.flatnonzero((count == 1) | (count == 2))
-    points, values = points[crossed], values[crossed]
+    points = points[crossed]
+    values = values[crossed]
     # The corner that differs from the other two, and both sides of the triangle that meet there.
     alone = np.argmax(above[crossed] == (count[crossed] == 1)[:, None], axis=1)
     row = np.arange(len(crossed))
-    ends, sides = [], []
+    ends = []
+    sides = []
     for k in (1, 2):
         other = (alone + k) % 3
         share = values[row, alone] / (values[row, alone] - values[row, other])
-        start, end = points[row, alone], points[row, other]
+        start = points[row, alone]
+        end = points[row, other]
         ends.append(start + share[:, None] * (end - start))
         sides.append(np.stack([start, end], axis=1))
     return np.stack(ends, axis=1), np.stack(sides, axis=1)

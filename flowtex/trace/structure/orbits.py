@@ -124,7 +124,8 @@ def orbits_around(field: FlowField, points: CriticalPoints) -> list[ClosedOrbit]
     around = CriticalPoints()
     for point in points:
         # On a grid, lines must approach the point or leave it by enough in a turn.
-        growth, rotation = abs(point.eigenvalues[0].real), abs(point.eigenvalues[0].imag)
+        growth = abs(point.eigenvalues[0].real)
+        rotation = abs(point.eigenvalues[0].imag)
         if point.poincare_index > 0 and (rates or 2 * np.pi * growth > MOVED_SHARE * rotation):
             around.append(point)
     around = around.strongest(MOST_RAYS)
@@ -148,7 +149,9 @@ class _Rays:
     def __init__(
         self, field: FlowField, points: CriticalPoints, around: CriticalPoints, rates: Rates | None
     ) -> None:
-        self._field, self._rates, surface = field, rates, field.surface
+        self._field = field
+        self._rates = rates
+        surface = field.surface
         self._is_isolated = isolation(field)
         self._middle = np.array([point.position for point in around])
         nodes = [surface.node_near(point.index) for point in around]
@@ -156,13 +159,15 @@ class _Rays:
         self.spacing = POINT_CELLS * float(np.median(self._cell))
         vectors = np.array([point.eigenvectors for point in around])
         plane = np.linalg.svd(np.concatenate([vectors.real, vectors.imag], axis=1))[2]
-        self._along, self._across = plane[:, 0], plane[:, 1]
+        self._along = plane[:, 0]
+        self._across = plane[:, 1]
         near = scipy.spatial.KDTree([point.index[::-1] for point in points])
 
         # Along a wall lines continue in ever shorter steps.
         ends = np.subtract(field.shape[::-1], 1.0)
         ends[list(field.periodic[::-1])] = np.inf
-        low, high = np.where(np.isinf(ends), -np.inf, WALL_CELLS), ends - WALL_CELLS
+        low = np.where(np.isinf(ends), -np.inf, WALL_CELLS)
+        high = ends - WALL_CELLS
 
         def within(index: Floats) -> Bools:
             position = surface.wrap(index.T)
@@ -189,18 +194,21 @@ class _Rays:
             if self._rates is not None:  # what steps of fourth order may do
                 least = np.maximum(MOVED_EXACT, (self.spacing / places) ** 4) * places
             measured = np.flatnonzero(np.abs(moved) > least)
-        first, second = measured[:-1], measured[1:]
+        first = measured[:-1]
+        second = measured[1:]
         gaps = np.cumsum(np.isnan(moved))
         turned = (moved[first] * moved[second] < 0) & (number[first] == number[second])
         turned &= gaps[first] == gaps[second]
-        first, second = first[turned], second[turned]
+        first = first[turned]
+        second = second[turned]
         return places[first], places[second], number[first], moved[first] > 0
 
     def orbits(
         self, low: Floats, high: Floats, ray: Indices, *, forward: bool
     ) -> list[ClosedOrbit]:
         """Return the orbits between two places of rays, which lines join in a direction."""
-        low, high = low.copy(), high.copy()
+        low = low.copy()
+        high = high.copy()
         for _ in range(ROUNDS if self._rates is None else 0):
             share = np.linspace(0, 1, PARTS + 1)
             distances = low[:, None] + (high - low)[:, None] * share
@@ -235,7 +243,10 @@ class _Rays:
         self, places: Floats, number: Indices, ray: Indices | None = None
     ) -> tuple[Floats, Indices, Floats]:
         """Return places (N,) on the surface, numbers of rays or of ``ray``, and indices (N, 2)."""
-        rays = number if ray is None else ray[number]
+        if ray is None:
+            rays = number
+        else:
+            rays = ray[number]
         if not len(places):
             return places, number, np.empty((0, 2))
         targets = self._middle[rays] + places[:, None] * self._along[rays]
@@ -259,7 +270,9 @@ class _Rays:
     ) -> Floats:
         """Return where lines from indices (N, 2) meet rays again; ``lines`` gets the points."""
         result = np.full(len(index), np.nan)
-        going, side, begin = np.arange(len(index)), np.zeros(len(index)), index
+        going = np.arange(len(index))
+        side = np.zeros(len(index))
+        begin = index
         most = int(min(TURN_EXTENTS * self._field.surface.extent / self.spacing, MOST_POINTS))
         lags = self.spacing * np.arange(1.0, CHUNK + 1)
         for done in range(0, most, CHUNK):
@@ -274,22 +287,29 @@ class _Rays:
             alive = np.arange(1, CHUNK + 1)[:, None] <= np.searchsorted(lags, found.reach)
             back = (across[:-1] < 0) & (across[1:] >= 0) & (along[1:] > 0) & alive
             back[: 0 if done else 2] = False
-            at, returned = np.argmax(back, axis=0), np.asarray(back.any(axis=0))
+            at = np.argmax(back, axis=0)
+            returned = np.asarray(back.any(axis=0))
             n = np.arange(len(going))
             share = across[at, n] / np.where(returned, across[at, n] - across[at + 1, n], 1.0)
             ends = along[at, n] + share * (along[at + 1, n] - along[at, n])
             result[going[returned]] = ends[returned]
             for column, k in enumerate(going):
                 if lines is not None:
-                    last = at[column] + 1 if returned[column] else CHUNK + 1
+                    if returned[column]:
+                        last = at[column] + 1
+                    else:
+                        last = CHUNK + 1
                     lines[k] = np.concatenate([lines[k], positions[1:last, column]])
             left = ~returned & alive.all(axis=0)
-            going, side, begin = going[left], side[left], positions[-1, left]
+            going = going[left]
+            side = side[left]
+            begin = positions[-1, left]
         return result
 
     def _orbit(self, line: Floats, *, stable: bool) -> ClosedOrbit:
         """Make an orbit of a turn, indices (N, 2)."""
-        surface, nodal = self._field.surface, self._field.velocity[0]
+        surface = self._field.surface
+        nodal = self._field.velocity[0]
         points = surface.at(np.concatenate([line, line[:1]]))
         velocity = np.array([surface_point(surface, at[::-1]).interpolate(nodal) for at in line])
         # A component of the velocity is linear in a cell, and the speed is not.
@@ -298,7 +318,10 @@ class _Rays:
         slow = 1 / along
         lengths = np.linalg.norm(np.diff(points, axis=0), axis=1)
         period = float(np.sum(lengths * 0.5 * (slow + np.roll(slow, -1))))
-        ordered = points if stable else points[::-1]
+        if stable:
+            ordered = points
+        else:
+            ordered = points[::-1]
         return ClosedOrbit(ordered, stable, period, float(self._field.times[0]))
 
 

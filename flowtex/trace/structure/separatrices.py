@@ -58,7 +58,9 @@ class Separatrix:
     @property
     def orbit(self) -> Floats | None:
         """Points of the closed orbit on which the line ends, (N, 3), or ``None``."""
-        return None if self.turn is None else self.points[self.turn :]
+        if self.turn is None:
+            return None
+        return self.points[self.turn :]
 
     @cached_property
     def unwound(self) -> Floats:
@@ -68,7 +70,9 @@ class Separatrix:
         """
         spacing = float(np.median(np.linalg.norm(np.diff(self.points, axis=0), axis=1)))
         turn = _turned(self.points, spacing, WOUND_POINTS * spacing)
-        return self.points if turn is None else self.points[: 2 * turn[1] - turn[0] + 1]
+        if turn is None:
+            return self.points
+        return self.points[: 2 * turn[1] - turn[0] + 1]
 
 
 class Separatrices(list[Separatrix]):
@@ -202,7 +206,8 @@ def _lines(
     starts = [(saddle, way) for saddle in saddles for way in saddle.ways(forward=forward)]
     if not starts:
         return []
-    size, node_near = field.surface.cell_size, field.surface.node_near
+    size = field.surface.cell_size
+    node_near = field.surface.node_near
     cells = np.array([float(size[node_near(saddle.index)]) for saddle, _ in starts])
     offsets = BEGIN_CELLS * cells[:, None] * np.array([way for _, way in starts])
     begin, _ = locator(field).nearest(np.array([s.position for s, _ in starts]) + offsets)
@@ -211,7 +216,8 @@ def _lines(
     lags = spacing * np.arange(1.0, min(int(length / spacing), most) + 1)
     positions, reach = _followed(field, points, begin, lags, forward=forward)
     ends = scipy.spatial.KDTree([point.position for point in points])
-    is_isolated, result = isolation(field), []
+    is_isolated = isolation(field)
+    result = []
     for n, first in enumerate(begin):
         saddle, cell = starts[n][0], cells[n]
         shown = positions[: int(np.searchsorted(lags, reach[n])), n]
@@ -245,7 +251,8 @@ def _followed(
     """Follow paths from (N, 2); return positions (M, N, 2), and how far they lead, (N,)."""
     follow = partial(follower(field, plane_rates(field)), forward=forward)
     first = follow(begin, lags[:FIRST_POINTS])
-    positions, reach = np.repeat(first.positions[-1:], len(lags), axis=0), first.reach.copy()
+    positions = np.repeat(first.positions[-1:], len(lags), axis=0)
+    reach = first.reach.copy()
     positions[:FIRST_POINTS] = first.positions
     away = np.flatnonzero(np.isinf(reach))
     if len(away) and len(lags) > FIRST_POINTS:
@@ -281,4 +288,6 @@ def _turned(line: Floats, spacing: float, near: float) -> tuple[int, int] | None
     gap = line[after] - line[before]
     beside = np.linalg.norm(gap - np.einsum("nc,nc->n", gap, tangent)[:, None] * tangent, axis=1)
     close = np.flatnonzero(beside < near)
-    return (int(before[close[0]]), int(after[close[0]])) if len(close) else None
+    if len(close):
+        return (int(before[close[0]]), int(after[close[0]]))
+    return None

@@ -57,7 +57,8 @@ class LimitedMessages(UnChunker):
 
     def __init__(self, declared: Container[str] = (), areas: Container[str] = ()) -> None:
         super().__init__()
-        self._declared, self._areas = declared, areas
+        self._declared = declared
+        self._areas = areas
 
     def set_max_message_size(self, size: int) -> None:
         """Limit messages to this many bytes, and to the general limit."""
@@ -72,23 +73,38 @@ class LimitedMessages(UnChunker):
                 f"more than {OPEN_MESSAGES} messages are incomplete; expected one of them to end "
                 "first"
             )
-        return self._checked(message) if isinstance(message, dict) else message
+        if isinstance(message, dict):
+            return self._checked(message)
+        return message
 
     def _checked(self, message: dict[str, Any]) -> dict[str, Any] | None:
         """Return a message without its invalid parts; ``None`` if it is refused as a whole."""
-        method, args = message.get("method"), message.get("args")
-        first = args[0] if isinstance(args, list) and args else None
+        method = message.get("method")
+        args = message.get("args")
+        if isinstance(args, list) and args:
+            first = args[0]
+        else:
+            first = None
         if method == "trame.state.update":
-            changes = [c for c in first if isinstance(c, dict)] if isinstance(first, list) else []
+            if isinstance(first, list):
+                changes = [c for c in first if isinstance(c, dict)]
+            else:
+                changes = []
             declared = [c for c in changes if name_among(c.get("key"), self._declared)]
             return {**message, "args": [declared], "kwargs": {}}
         if method == "trame.lifecycle.update":
-            return {**message, "kwargs": {}} if name_among(first, EVENTS) else None
+            if name_among(first, EVENTS):
+                return {**message, "kwargs": {}}
+            return None
         if method == "trame.trigger":  # trame writes unknown names to the log
             is_plain = isinstance(first, str) and len(first) <= NAME_LENGTH and first.isidentifier()
-            return message if is_plain else None
+            if is_plain:
+                return message
+            return None
         if isinstance(method, str) and method.startswith("trame.rca."):
-            return {**message, "kwargs": {}} if name_among(first, self._areas) else None
+            if name_among(first, self._areas):
+                return {**message, "kwargs": {}}
+            return None
         return message
 
 
@@ -134,7 +150,8 @@ class LocalSession(Session):
     """One application, and the end point of its trame server."""
 
     def __init__(self, app: Any) -> None:
-        self.app, self._routes = app, Routes.of(app.server)
+        self.app = app
+        self._routes = Routes.of(app.server)
         super().__init__(self._routes.token)
         self._endpoint: Any = None
         self._task: asyncio.Task[None] | None = None

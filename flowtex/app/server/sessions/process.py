@@ -85,7 +85,8 @@ class ProcessSession(Session):
         super().__init__(about["files"], about["token"])
         self.static = about["static"]
         self._child = child
-        self._ending, self._ended = False, asyncio.Event()
+        self._ending = False
+        self._ended = asyncio.Event()
         loop = asyncio.get_running_loop()
         threading.Thread(target=self._run, args=(loop,), name="session", daemon=True).start()
 

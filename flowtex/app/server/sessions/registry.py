@@ -66,11 +66,14 @@ class Session(ABC):
     @property
     def away(self) -> float:
         """Seconds for which no page has been connected."""
-        return 0.0 if self.connected else time.monotonic() - self._left
+        if self.connected:
+            return 0.0
+        return time.monotonic() - self._left
 
     def expect(self) -> None:
         """Wait for a page that loads and connects."""
-        self._left, self._loading = time.monotonic(), True
+        self._left = time.monotonic()
+        self._loading = True
 
     def is_idle(self, limit: float) -> bool:
         """Return whether no page has been connected for ``limit`` seconds, and none is loading."""
@@ -179,14 +182,18 @@ class Sessions:
                 session.expect()
                 return session
         if self._ready is not None:
-            session, self._ready = self._ready, None
+            session = self._ready
+            self._ready = None
             session.expect()
             return session
         async with self._opening:
             if len(self._by_token) >= self.limit:
                 oldest = max(self._by_token, key=lambda other: self._by_token[other].away)
                 if self._by_token[oldest].away < REPLACE_AFTER_S:
-                    pages = "one page" if self.limit == 1 else f"{self.limit} pages"
+                    if self.limit == 1:
+                        pages = "one page"
+                    else:
+                        pages = f"{self.limit} pages"
                     raise UnavailableError(
                         f"The limit is {pages} at a time, and all are in use. One becomes free "
                         "soon after somebody closes a page."
@@ -245,7 +252,8 @@ class Sessions:
 
     async def close(self) -> None:
         """End all sessions."""
-        self._ready, self._closed = None, True
+        self._ready = None
+        self._closed = True
         # A page does not wait for another one, which may be suspended.
         await asyncio.gather(*(session.disconnect() for session in self))
         await asyncio.gather(*map(self._end, list(self._by_token)))
