@@ -90,10 +90,9 @@ def colour_table(cmap: Any | None, count: int | None = None, *, flip: bool = Fal
     ``cmap`` is a name, a matplotlib or PyVista colour map, or an array (N, 3 or 4), uint8 or from 0
     to 1. Anything else raises a FieldError, which suggests similar names.
     """
+    values = getattr(cmap, "values", None)
     if isinstance(cmap, np.ndarray):
         values = cmap
-    else:
-        values = getattr(cmap, "values", None)
     if isinstance(values, np.ndarray):  # also that of a LookupTable of PyVista's
         table = _resampled(np.asarray(values), count or ENTRIES)
     else:
@@ -194,10 +193,9 @@ class ColourScale:
         """Return the places of values on a bar, from 0 to 1; NaN stays."""
         if self.edges is not None:
             return np.asarray(np.interp(values, self.edges, np.linspace(0, 1, len(self.edges))))
+        scaled: Any = np.asarray
         if self.log_scale:
             scaled = np.log
-        else:
-            scaled = np.asarray
         low, high = scaled([self.low, self.high])
         numbers = scaled(np.maximum(np.asarray(values, dtype=float), self.low))
         return np.asarray(np.clip((numbers - low) / ((high - low) or 1.0), 0, 1))

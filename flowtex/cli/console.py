@@ -80,10 +80,9 @@ def load_field(files: Sequence[Path], choice: Mapping[str, Any]) -> FlowField:
     if not files:
         raise UsageError("no file is given; name one")
     options = dict(choice)
+    mesh: Any = files
     if len(files) == 1:
         mesh = files[0]
-    else:
-        mesh = files
     time = options.pop("time", None)
     with waiting(f"Reading {files[0].name}"):
         return read_field(mesh, FieldOptions(**options), time)

@@ -295,9 +295,8 @@ class Levels:
         self, level: int, name: str, rows: Indices, columns: Indices, step: int | None = None
     ) -> _Piece:
         """Return the piece of an array over the nodes at some rows and columns."""
-        if step is None:
-            leading = ()
-        else:
+        leading: tuple[int, ...] = ()
+        if step is not None:
             leading = (step,)
         array = f"{level}/{name}"
         if name in ("x", "y"):

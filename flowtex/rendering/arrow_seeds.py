@@ -116,14 +116,10 @@ class ArrowSeeds:
 
     def _make(self, view: TileView, spacing: float) -> Seeds:
         geometry = self._geometry
-        if view.eye is None:
-            distance = np.inf
-        else:
-            distance = norm(geometry.center - view.eye)
+        nearest = 1.0
         if view.eye is not None:
+            distance = float(norm(geometry.center - view.eye))
             nearest = max(distance - 0.5 * geometry.extent, 0.0)
-        else:
-            nearest = 1.0
         least = CLOSER * spacing * view.pixel(np.array(nearest))
         radius = geometry.extent
         parts = self._cells

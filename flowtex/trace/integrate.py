@@ -93,10 +93,9 @@ class Columns:
     def pick(self, mask: Bools | Indices) -> Self:
         """Return some of the particles."""
         # Numbers are several times as fast as a mask where there is more than one row.
+        at = mask
         if mask.dtype == bool:
             at = np.flatnonzero(mask)
-        else:
-            at = mask
         parts = vars(self).values()
         return type(self)(*(None if part is None else part.take(at, axis=-1) for part in parts))
 

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from copy import copy
 from functools import cached_property
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import scipy
@@ -126,9 +126,8 @@ class Sampler:
     def _sign(self, position: Floats, one: Floats, two: Floats, chart: Numbers | None) -> Floats:
         """Return 1, or -1 where rates (2, N) form an angle above 90 degrees in space, (N,)."""
         along = one[0] * two[0] + one[1] * two[1]
-        if chart is None:
-            flat = slice(None)
-        else:
+        flat: Any = slice(None)
+        if chart is not None:
             flat = np.flatnonzero(chart == 0)
         flat_position = position[:, flat]
         (a, b) = one[:, flat]

@@ -442,9 +442,8 @@ def _appearance(pane: FlowHandle) -> tuple[object, ...]:
     scene = pane.scene
     settings = scene.settings
     built = [getattr(settings, row.name) for row in TABLE.values() if row.affects != "uniform"]
-    if settings.noise == "procedural":
-        baked = ()
-    else:
+    baked: tuple[Any, ...] = ()
+    if settings.noise != "procedural":
         baked = (settings.seed, settings.tiles)
     look = scene.appearance, scene.scalar_limits
     return (*built, *baked, scene.field, *look, id(scene.image))

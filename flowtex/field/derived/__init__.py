@@ -99,10 +99,9 @@ def steps_of(field: Any, name: str) -> Steps:
     vectors = [field.vectors or UNNAMED, *(part[:-2] for part in field.parts)]
     if field.projection is not None:
         vectors = []
+    derived: list[str] = []
     if finest_of(field) is None:
-        derived = DERIVED
-    else:
-        derived = ()
+        derived = list(DERIVED)
     names = ", ".join(map(repr, dict.fromkeys(["speed", *field.scalars, *vectors, *derived])))
     msg = f"the field has no scalar {name!r}; expected one of {names}"
     if COMPONENT.search(name):
@@ -178,12 +177,10 @@ def with_vector_scalar(field: Any, name: str) -> Any:
     if name == own or (base == own and letter and letter in LETTERS):
         axis = LETTERS.find(letter)
         long_name = f"{own}_{letter}"
+        own_part: Callable[[Floats], Floats] = partial(np.take, indices=axis, axis=-1)
         if name == own:
             long_name = magnitude_label(field.vectors, field.velocity_unit)
-        if name == own:
             own_part = norm
-        else:
-            own_part = lambda vectors: vectors[..., axis]
         steps = scaled_steps(map_steps(field.velocity, own_part), field.speed_scale)
         unit = field.speed_unit
     elif name in field.parts:

@@ -290,9 +290,8 @@ def _one_sided(
             else:
                 at = number - turns * last
             exists.append(usable & (at == number if turn is None else True) & valid[at, place])
-            if turn is None:
-                shift = 0.0
-            else:
+            shift: Floats | float = 0.0
+            if turn is not None:
                 shift = turns * turn[:, None]
             values.append(data[:, at, place] + shift)
         near, far = values

@@ -298,10 +298,9 @@ class ImageLookup(Lookup):
         covered = covered_texels(coordinate, step_size)
         # A step must not skip a texel of the image.
         least = min(float(np.min(step_size / size)), 1.0)
+        width = np.full_like(covered, least)
         if values["u_lod"]:
             width = np.maximum(covered, least)
-        else:
-            width = least
         step = mips.step.at(self._start, mip_level(covered, values))[:, 0]
         self.spacing = step * width * values["u_spacing"]
 

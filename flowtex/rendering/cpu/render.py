@@ -52,10 +52,9 @@ class Picture:
         below = np.broadcast_to(np.asarray(colour, dtype=float), shape)[self.covered]
         if self.settings.show_level:
             below = level_colour(self.noise_level[self.covered])
+        lay: Callable[..., Floats] = paint
         if self.value.ndim == 2:
             lay = shade
-        else:
-            lay = paint
         result = np.full(shape, background, dtype=float)
         result[self.covered] = lay(below, self.value[self.covered], self.settings)
         return np.rint(result * 255.0).astype(np.uint8)

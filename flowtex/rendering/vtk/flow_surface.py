@@ -87,14 +87,19 @@ class FlowSurface:
     ) -> None:
         check_fork()
         note_thread(renderer.GetRenderWindow())
-        self._actor, self._renderer, self._settings = actor, weakref.ref(renderer), settings
+        self._actor = actor
+        self._renderer = weakref.ref(renderer)
+        self._settings = settings
         self._base = FlowLayer(actor, renderer, textures, settings)
         self._moment = (0, 0, 0.0)
         self._scalars: Scalars | None = None
         self._drawn: tuple[Any, ...] = ()
         self._arrows = SurfaceArrows(renderer, settings)
         self._tiles: dict[TileKey, FlowLayer] = {}
-        self._loader = None if pyramid is None else self._loader_of(pyramid)
+        if pyramid is None:
+            self._loader = None
+        else:
+            self._loader = self._loader_of(pyramid)
         #: Height in pixels for which tiles are chosen, where a frame is a draft of fewer, and that
         #: of the picture that it is a part of.
         self.full_height: int | None = None
@@ -131,7 +136,8 @@ class FlowSurface:
         self, textures: TextureSet, pyramid: Pyramid | None, moment: tuple[int, int, float]
     ) -> None:
         """Draw another flow from now on, at a moment of it, without scalars."""
-        self._moment, self._scalars = moment, None
+        self._moment = moment
+        self._scalars = None
         self.set_textures(textures, pyramid)
 
     def set_textures(self, textures: TextureSet, pyramid: Pyramid | None = None) -> None:
@@ -140,7 +146,10 @@ class FlowSurface:
         self._arrows.close()
         if self._loader is not None:
             self._loader.close()
-        self._loader = None if pyramid is None else self._loader_of(pyramid)
+        if pyramid is None:
+            self._loader = None
+        else:
+            self._loader = self._loader_of(pyramid)
         self._drawn = ()
         if textures.geometry.field is self._base.textures.geometry.field:
             set_attributes(self._actor.mapper.dataset, textures)
@@ -191,7 +200,10 @@ class FlowSurface:
         if (scalars := self._scalars) is not None:
             if scalars is not written:
                 scalars.write(layer.textures, layer.mesh)
-            layer.flat_array = scalars.name if scalars.on_cells else None
+            if scalars.on_cells:
+                layer.flat_array = scalars.name
+            else:
+                layer.flat_array = None
 
     def _before_frame(self) -> None:
         """Choose tiles, shaders and triangles for the camera of the frame."""
@@ -216,7 +228,10 @@ class FlowSurface:
         self._base.prepare(blank=is_covered)
         self._set_triangles(layers, shown, view)
         self._passes.show(self, list(layers.values()))
-        pyramid = None if self._loader is None else self._loader.pyramid
+        if self._loader is None:
+            pyramid = None
+        else:
+            pyramid = self._loader.pyramid
         self._arrows.look(layers, pyramid, view, self._base.place)
 
     def _after_frame(self) -> None:
@@ -258,7 +273,10 @@ class FlowSurface:
         if self._notify is not None:
             return True
         renderer = self._renderer()
-        window = renderer.GetRenderWindow() if renderer is not None else None
+        if renderer is not None:
+            window = renderer.GetRenderWindow()
+        else:
+            window = None
         if window is None:
             return False
         interactor = window.GetInteractor()
@@ -278,17 +296,24 @@ class FlowSurface:
         return True
 
     def _tile_view(self, renderer: pv.Renderer) -> TileView:
-        camera, (width, height), planes = renderer.GetActiveCamera(), renderer.GetSize(), [0.0] * 24
-        eye, half = None, 0.5 * self._base.height
+        camera = renderer.GetActiveCamera()
+        (width, height) = renderer.GetSize()
+        planes = [0.0] * 24
+        eye = None
+        half = 0.5 * self._base.height
         if not camera.GetParallelProjection():
-            eye, half = self.view.eye[:3], float(np.tan(np.radians(camera.GetViewAngle() / 2)))
+            eye = self.view.eye[:3]
+            half = float(np.tan(np.radians(camera.GetViewAngle() / 2)))
         camera.GetFrustumPlanes(width / max(height, 1), planes)
         sides = np.reshape(planes, (6, 4))[:4] @ self._base.place  # without near and far
         pixels = (self.full_height or height) / self.view.density
         return TileView(eye, half, pixels, sides, cell_pixels(self._settings))
 
     def _ready(self, key: TileKey, steps: list[int]) -> bool:
-        tile = None if self._loader is None else self._loader.get(key, steps)
+        if self._loader is None:
+            tile = None
+        else:
+            tile = self._loader.get(key, steps)
         if tile is None:
             return False
         if key not in self._tiles and tile.textures is not None:
@@ -300,7 +325,8 @@ class FlowSurface:
         reference = weakref.ref(self)
 
         def prepare(textures: TextureSet) -> tuple[Any, ...]:
-            surface, mesh = reference(), surface_mesh(textures)
+            surface = reference()
+            mesh = surface_mesh(textures)
             if scalars := surface and surface._scalars:
                 scalars.write(textures, mesh)
             _ = textures.unit, textures.cell, textures.critical_cell  # which are cached
@@ -318,7 +344,8 @@ class FlowSurface:
         actor = pv.Actor(mapper=FlowMapper(mesh))
         actor.SetProperty(self._actor.prop)
         actor.SetUserMatrix(self._actor.GetMatrix())
-        settings, take = self._settings, tile.take
+        settings = self._settings
+        take = tile.take
         layer = FlowLayer(actor, self._renderer(), textures, settings, take, mesh_levels)
         self._write_scalars(layer, written)
         if written is not self._scalars:
@@ -326,7 +353,8 @@ class FlowSurface:
         return layer
 
     def _show(self, keys: list[TileKey | None]) -> None:
-        renderer, base = self._renderer(), self._actor
+        renderer = self._renderer()
+        base = self._actor
         if renderer is None:
             return
         for key, layer in self._tiles.items():
@@ -352,18 +380,27 @@ class FlowSurface:
         view: TileView,
     ) -> None:
         """Draw as few triangles as the view needs, without a crack between tiles."""
-        renderer, geometry = self._renderer(), self._base.textures.geometry
-        depth, blocks = 0, self._base.mesh_levels.blocks.shape[:2]
-        pyramid = None if self._loader is None else self._loader.pyramid
+        renderer = self._renderer()
+        geometry = self._base.textures.geometry
+        depth = 0
+        blocks = self._base.mesh_levels.blocks.shape[:2]
+        if self._loader is None:
+            pyramid = None
+        else:
+            pyramid = self._loader.pyramid
         if pyramid is not None:
-            depth, blocks = pyramid.depth, pyramid.blocks
+            depth = pyramid.depth
+            blocks = pyramid.blocks
         regions: dict[TileKey | None, Region] = {}
         for key, layer in layers.items():
             levels = layer.choose_levels(renderer, view)
             if pyramid is not None:
                 for child in shown[key]:
                     levels[finer_part(pyramid, child, key)] = -1
-            place = TileKey(depth, 0, 0) if key is None else key
+            if key is None:
+                place = TileKey(depth, 0, 0)
+            else:
+                place = key
             row, column = (TILE_BLOCKS * index << place.level for index in place[1:])
             ragged = layer.mesh_levels.ragged
             regions[key] = Region(place.level, row, column, levels, ragged)
@@ -382,7 +419,8 @@ class SurfaceArrows:
     """The arrows of one surface: those of the root, drawn by the finest tile there."""
 
     def __init__(self, renderer: pv.Renderer, settings: Settings) -> None:
-        self._renderer, self._settings = weakref.ref(renderer), settings
+        self._renderer = weakref.ref(renderer)
+        self._settings = settings
         self._seeds: ArrowSeeds | None = None
         self._drawn: tuple[Any, ...] = ()
         self._parts: dict[TileKey | None, _Arrows] = {}
@@ -395,7 +433,8 @@ class SurfaceArrows:
         place: Floats,
     ) -> None:
         """Show the arrows of a view on the layers of a surface at a place (4, 4)."""
-        renderer, base = self._renderer(), layers[None]
+        renderer = self._renderer()
+        base = layers[None]
         if renderer is None or not has_arrows(base.textures, self._settings):
             self.close()
             return
@@ -421,7 +460,9 @@ class SurfaceArrows:
         for part in self._parts.values():
             if (renderer := self._renderer()) is not None:
                 renderer.RemoveActor(part.actor)
-        self._parts, self._seeds, self._drawn = {}, None, ()
+        self._parts = {}
+        self._seeds = None
+        self._drawn = ()
 
     def _shared(
         self, seeds: Seeds, layers: Mapping[TileKey | None, FlowLayer], pyramid: Pyramid | None
@@ -440,7 +481,8 @@ class SurfaceArrows:
             inside, corners, place = in_tile(pyramid, key, geometry, root_place)
             result[key] = vertex_data(geometry, corners, place, seeds.radius[inside])
             seeds = seeds[~inside]
-        geometry, corners = layers[None].textures.geometry, self._seeds.corners[seeds.cell]
+        geometry = layers[None].textures.geometry
+        corners = self._seeds.corners[seeds.cell]
         result[None] = vertex_data(geometry, corners, seeds.place, seeds.radius)
         return {key: data for key, data in result.items() if len(data["flowtexRadius"])}
 
@@ -449,7 +491,9 @@ class _Arrows:
     """The arrows of one layer, as an actor."""
 
     def __init__(self, layer: FlowLayer, renderer: pv.Renderer, settings: Settings) -> None:
-        self.layer, self._renderer, self._settings = layer, weakref.ref(renderer), settings
+        self.layer = layer
+        self._renderer = weakref.ref(renderer)
+        self._settings = settings
         self._data: dict[str, Floats] = {}
         self._anchor: Floats | None = None
         self._variant: frozenset[str] | None = None
@@ -459,10 +503,12 @@ class _Arrows:
         observe_draws(self.actor.mapper, self._before_draw)
 
     def set_data(self, data: dict[str, Floats]) -> None:
-        self._data, self._anchor = data, None
+        self._data = data
+        self._anchor = None
 
     def look(self, place: Floats) -> None:
-        geometry, anchor = self.layer.textures.geometry, self.layer.view.anchor
+        geometry = self.layer.textures.geometry
+        anchor = self.layer.view.anchor
         matrix = np.eye(4)
         matrix[:3, :3] = geometry.frame.T
         matrix[:3, 3] = geometry.center + geometry.frame.T @ anchor
@@ -474,15 +520,20 @@ class _Arrows:
 
     def _mesh(self, anchor: Floats) -> pv.PolyData:
         """Return the ribbons of the seeds: two vertices at each end of a piece."""
-        position, count = self._data["flowtexPosition"], 2 * (ARROW_PIECES + 1)
+        position = self._data["flowtexPosition"]
+        count = 2 * (ARROW_PIECES + 1)
         number = np.arange(count)
         ribbon = np.stack([number // 2, 2 * (number % 2) - 1], axis=-1)
         strip = 2 * np.arange(ARROW_PIECES)[:, None] + [0, 1, 3, 2]
         faces: Any = (np.arange(len(position))[:, None, None] * count + strip).reshape(-1, 4)
         mesh = pv.PolyData.from_regular_faces(np.repeat(position - anchor, count, axis=0), faces)
-        mapper, points = self.actor.mapper, vtkDataObject.FIELD_ASSOCIATION_POINTS
+        mapper = self.actor.mapper
+        points = vtkDataObject.FIELD_ASSOCIATION_POINTS
         planar = self.layer.textures.geometry.planar
-        unread = ("flowtexPosition", "flowtexNormal") if planar else ("flowtexPosition",)
+        if planar:
+            unread = ("flowtexPosition", "flowtexNormal")
+        else:
+            unread = ("flowtexPosition",)
         read = self._data.items()
         repeated = {name: np.repeat(a, count, axis=0) for name, a in read if name not in unread}
         for name, values in {**repeated, RIBBON: np.tile(ribbon, (len(position), 1))}.items():

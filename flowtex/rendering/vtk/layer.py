@@ -179,9 +179,13 @@ class FlowLayer:
                     self._gpu[name] = texture
             self._steps = (before, after)
         first, last = self.textures.store.field.times[[before, after]]
-        self.view.between, self.view.time = between, float(first + between * (last - first))
+        self.view.between = between
+        self.view.time = float(first + between * (last - first))
         if self._drawn and not self._is_blank and self.view.time != old_time:
-            ahead = after + (between > 0) if self.view.time > old_time else before - 1
+            if self.view.time > old_time:
+                ahead = after + (between > 0)
+            else:
+                ahead = before - 1
             self._prefetch.prepare(ahead)
 
     def close(self) -> None:
@@ -221,7 +225,8 @@ class FlowLayer:
     @property
     def _has_own_colours(self) -> bool:
         """Whether VTK's colours are needed: those of vertices, or with edges."""
-        prop, colours = self.actor.prop, self._colours
+        prop = self.actor.prop
+        colours = self._colours
         if colours is None:
             alike = prop.GetAmbientColor() == prop.GetDiffuseColor()
             return bool(prop.show_edges or self._mapper.GetScalarVisibility() or not alike)
@@ -230,7 +235,10 @@ class FlowLayer:
     def _write_text(self, renderer: Any) -> None:
         self.deferred = is_deferred(self.actor, renderer, self.textures)
         # An actor that shows what passes have drawn has one text, however they sum.
-        variant = self.variant & SHOWN if self.deferred else self.variant
+        if self.deferred:
+            variant = self.variant & SHOWN
+        else:
+            variant = self.variant
         if variant == self._variant:
             return
         self._variant = variant
@@ -320,10 +328,12 @@ class FlowLayer:
         ends = np.reshape(self.mesh.GetBounds(), (3, 2))
         corners = np.stack([*np.meshgrid(*ends, indexing="ij"), np.ones((2, 2, 2))])
         seen = matrix @ self.place @ corners.reshape(4, 8)
-        low, high = np.zeros(2), size
+        low = np.zeros(2)
+        high = size
         if (seen[3] > 0).all():
             at = (seen[:2] / seen[3] + 1) / 2 * size[:, None]
-            low, high = np.maximum(low, at.min(axis=1) - 2), np.minimum(high, at.max(axis=1) + 2)
+            low = np.maximum(low, at.min(axis=1) - 2)
+            high = np.minimum(high, at.max(axis=1) + 2)
         if (low >= high).any():
             return None
         return int(low[0]), int(high[0]), int(low[1]), int(high[1])
@@ -335,9 +345,11 @@ class FlowLayer:
 
     def _loaders(self, send: Callable[..., vtkTextureObject]) -> dict[str, Callable[[], Any]]:
         loaders: dict[str, Callable[[], Any]] = {"u_slices": lambda: send(**self._slices(0))}
-        colours, geometry = self._colours, self.textures.geometry
+        colours = self._colours
+        geometry = self.textures.geometry
         # Also where nothing is mapped: no sampler may share a unit with one of another kind.
-        none, single = np.zeros((1, 1, 1, 4)), partial(send, levels=0, single=True)
+        none = np.zeros((1, 1, 1, 4))
+        single = partial(send, levels=0, single=True)
         loaders |= {
             "u_shares": lambda: single(colours.shares(geometry) if colours else none),
             "u_colours": lambda: single(colours.colours() if colours else none),
@@ -355,12 +367,16 @@ class FlowLayer:
         return loaders
 
     def _slices(self, number: int) -> dict[str, Any]:
-        step, textures = self._steps[number], self.textures
+        step = self._steps[number]
+        textures = self.textures
         if self._is_blank:
             layers = np.zeros((textures.count, *textures.geometry.size, 4), np.float16)
             layers[0, ..., 3] = 1.0
         else:
-            layers = self._layers(step) if self._layers else self._prefetch.take(step)
+            if self._layers:
+                layers = self._layers(step)
+            else:
+                layers = self._prefetch.take(step)
         return {"texels": layers, "levels": textures.geometry.levels}
 
     def look(self) -> None:
@@ -372,9 +388,10 @@ class FlowLayer:
         self._follow_colours()
         camera = renderer.GetActiveCamera()
         parallel = bool(camera.GetParallelProjection())
-        eye = (
-            np.multiply(camera.GetDirectionOfProjection(), -1) if parallel else camera.GetPosition()
-        )
+        if parallel:
+            eye = np.multiply(camera.GetDirectionOfProjection(), -1)
+        else:
+            eye = camera.GetPosition()
         placed = self.place
         points = [(*camera.GetFocalPoint(), 1.0), (*eye, float(not parallel))]
         focus, self.view.eye = np.linalg.solve(placed, np.transpose(points)).T
@@ -403,7 +420,10 @@ class FlowLayer:
         if np.abs(focus - self.view.anchor).max() <= ANCHOR_RANGE * self.height:
             return
         near_middle = np.abs(focus).max() <= ANCHOR_RANGE * self.height
-        self.view.anchor = np.zeros(3) if near_middle else focus
+        if near_middle:
+            self.view.anchor = np.zeros(3)
+        else:
+            self.view.anchor = focus
         self._retire("u_nodes")
         if not self.deferred:
             self._write_position()
@@ -438,7 +458,8 @@ class FlowLayer:
 
     def _follow_colours(self) -> None:
         colours = MappedColours.of(self._mapper, self.mesh, self.flat_array)
-        before, self._colours = self._colours, colours
+        before = self._colours
+        self._colours = colours
         if (before and before.state) != (self._colours and self._colours.state):
             self._retire("u_shares", "u_colours")
 
@@ -446,7 +467,9 @@ class FlowLayer:
     def window(self) -> vtkOpenGLRenderWindow | None:
         """The window of the renderer, once it has one."""
         renderer = self._renderer()
-        return None if renderer is None else renderer.GetRenderWindow()
+        if renderer is None:
+            return None
+        return renderer.GetRenderWindow()
 
     def _follow_context(self) -> None:
         """Forget textures that VTK has freed with their context."""
@@ -517,9 +540,15 @@ def insert_text(
         name = f"vtk/{prefix}{stage}_{part}.glsl"
         if (shader_folder() / name).is_file():
             is_last = (stage, part) == ("fragment", "impl")
-            mark = "//VTK::Light::Impl" if is_last else f"//VTK::PositionVC::{part.title()}"
+            if is_last:
+                mark = "//VTK::Light::Impl"
+            else:
+                mark = f"//VTK::PositionVC::{part.title()}"
             text = shader_text(name, variant)
-            text = f"{text}\n{mark}\n" if before else f"{mark}\n{text}"
+            if before:
+                text = f"{text}\n{mark}\n"
+            else:
+                text = f"{mark}\n{text}"
             actor.add_shader_replacement(stage, mark, text, _feature_name=owner)
 
 

@@ -132,7 +132,8 @@ class DeferredPasses:
         renderer = self._renderer()
         assert renderer is not None
         if self._alone is None or self._alone[0]() is not layer:
-            part, alone = _Part(layer, whole=True), vtkRenderer()
+            part = _Part(layer, whole=True)
+            alone = vtkRenderer()
             alone.AutomaticLightCreationOff()
             alone.AddActor(part.actor)
             self._alone = weakref.ref(layer), part, alone
@@ -222,10 +223,12 @@ class _Part:
     """What the passes draw of one layer."""
 
     def __init__(self, layer: FlowLayer, *, whole: bool = False) -> None:
-        self._layer, self._whole = weakref.ref(layer), whole
+        self._layer = weakref.ref(layer)
+        self._whole = whole
         mesh = layer.mesh
         if whole:
-            mesh, levels = mesh.copy(deep=False), layer.mesh_levels
+            mesh = mesh.copy(deep=False)
+            levels = layer.mesh_levels
             set_triangles(mesh, levels.triangles(np.zeros(levels.blocks.shape[:2], np.int64)))
         self.actor = pv.Actor(mapper=FlowMapper(mesh))
         self.actor.mapper.scalar_visibility = False
@@ -241,7 +244,8 @@ class _Part:
         self._number = number
         if self.actor.mapper.dataset is not layer.mesh and not self._whole:
             self.actor.mapper.SetInputData(layer.mesh)
-        shown, prop = layer.actor, self.actor.prop
+        shown = layer.actor
+        prop = self.actor.prop
         prop.culling = shown.prop.culling
         self.actor.SetUserMatrix(shown.GetMatrix())
         planes = shown.mapper.GetClippingPlanes()
@@ -252,7 +256,8 @@ class _Part:
         variant = layer.variant
         if variant == self._variant:
             return
-        self._variant, self._sum = variant, Rectangle("sum", variant)
+        self._variant = variant
+        self._sum = Rectangle("sum", variant)
         arrays = {"flowtexCoordinate": COORDINATE}
         if "FLOWTEX_TRIANGLES" in variant:
             arrays["flowtexCorners"] = CORNERS

@@ -332,10 +332,9 @@ class ClientData:
     def moment(self, time: float) -> tuple[int, ...]:
         """Return the steps that are needed to show a time, one or two."""
         before, after, _ = steps_around(self.times, time)
+        shown: tuple[int, ...] = (before, after)
         if before == after:
             shown = (before,)
-        else:
-            shown = (before, after)
         if not self.traced or self.textures.store.streamlines:
             return shown
         around = (velocity.steps_around(self.textures, step) for step in shown)

@@ -49,7 +49,7 @@ LEAST_SHARE = 1e-7  #: Share of a neighbour's velocity that replaces one that is
 def steady_parts(field: FlowField, steps: Sequence[int] | None, text: str) -> Iterator[FlowField]:
     """Return the fields of some time steps, or of all, with a progress bar of this text."""
     if steps is None:
-        numbers = range(len(field.times))
+        numbers = list(range(len(field.times)))
     else:
         numbers = [field.step_number(n) for n in steps]
     return map(field.at_step, track(numbers, len(numbers), text))

@@ -471,7 +471,7 @@ def view_window(field: FlowField, focus: Floats, visible: float) -> Floats | Non
     middle = ends[:, 0] + step * np.rint((focus[:2] - ends[:, 0]) / step)
     window = np.clip(np.stack([middle - size / 2, middle + size / 2], axis=1), *ends.T[..., None])
     if (np.ptp(window, axis=1) > 0).all():
-        return window
+        return np.asarray(window)
     return None
 
 
