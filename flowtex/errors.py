@@ -50,9 +50,11 @@ class Notice(UserWarning):
 
 def notify(text: str, kind: type[Warning] = Notice) -> None:
     """Warn at the line that called the package, however deep the call stack is."""
-    level, frame = 2, sys._getframe(1)
+    level = 2
+    frame = sys._getframe(1)
     while frame.f_back is not None and frame.f_code.co_filename.startswith(str(_PACKAGE)):
-        level, frame = level + 1, frame.f_back
+        level = level + 1
+        frame = frame.f_back
     warnings.warn(text, kind, stacklevel=level)
 
 

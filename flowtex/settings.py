@@ -80,7 +80,10 @@ class Setting:
         if type(value) is self.kind and value == self.default:
             return value
         if self.switch is not None and isinstance(value, bool):
-            value = self.switch if value else 0
+            if value:
+                value = self.switch
+            else:
+                value = 0
         if self.kind is bool:
             fits = isinstance(value, bool) or type(value).__name__ == "bool"
         elif self.kind is str:
@@ -108,8 +111,12 @@ class Setting:
     def format(self, value: Any) -> str:
         """Return a value as the text that :meth:`parse` reads, without loss."""
         if self.kind is bool:
-            return "on" if value else "off"
-        return repr(float(value)) if self.kind is float else str(value)
+            if value:
+                return "on"
+            return "off"
+        if self.kind is float:
+            return repr(float(value))
+        return str(value)
 
     @property
     def label(self) -> str:
@@ -123,7 +130,9 @@ class Setting:
             f"{TABLE[name].label} {'≠' if sign == '!=' else '='} {TABLE[name].format(value)}"
             for name, sign, value in NEEDS.get(self.name, ())
         ]
-        return f"Requires {' or '.join(needs)}." if needs else ""
+        if needs:
+            return f"Requires {' or '.join(needs)}."
+        return ""
 
     @property
     def control(self) -> Control:
@@ -132,7 +141,9 @@ class Setting:
             return "checkbox"
         if self.choices:
             return "choice"
-        return "number" if (self.high or 0) - (self.low or 0) > SLIDER_RANGE else "slider"
+        if (self.high or 0) - (self.low or 0) > SLIDER_RANGE:
+            return "number"
+        return "slider"
 
     @property
     def logarithmic(self) -> bool:
@@ -146,8 +157,14 @@ class Setting:
             return "True or False"
         if self.kind is str:
             return " or ".join(map(repr, self.choices))
-        number = "a whole number" if self.kind is int else "a number"
-        switch = "" if self.switch is None else "True, False or "
+        if self.kind is int:
+            number = "a whole number"
+        else:
+            number = "a number"
+        if self.switch is None:
+            switch = ""
+        else:
+            switch = "True, False or "
         return f"{switch}{number} from {self.low:g} to {self.high:g}"
 
 

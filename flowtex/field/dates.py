@@ -65,21 +65,41 @@ def date_text(start: Any, time: float, step: float) -> str:
     """Return a time in seconds since ``start`` as a date, to the precision of time steps."""
     at_midnight = not (start.hour or start.minute or start.second or start.microsecond)
     whole_days = step % DAY_S == 0 and time % DAY_S == 0 and at_midnight
-    form = "%Y-%m-%d" if whole_days else "%Y-%m-%d %H:%M" if step >= 60 else "%Y-%m-%d %H:%M:%S"
+    if whole_days:
+        form = "%Y-%m-%d"
+    elif step >= 60:
+        form = "%Y-%m-%d %H:%M"
+    else:
+        form = "%Y-%m-%d %H:%M:%S"
     return str((start + timedelta(seconds=time)).strftime(form))
 
 
 def time_text(field: Any, time: float) -> str:
     """Return a time of a field: its date, or a number that distinguishes its steps."""
-    alone = DAY_S if field.start is not None else abs(time) or 1.0
-    step = float(np.diff(field.times).min()) if len(field.times) > 1 else alone
+    if field.start is not None:
+        alone = DAY_S
+    else:
+        alone = abs(time) or 1.0
+    if len(field.times) > 1:
+        step = float(np.diff(field.times).min())
+    else:
+        step = alone
     if field.start is not None:
         return date_text(field.start, time, step)
     power = math.floor(math.log10(step))
-    decimals = max(2 - power, 0) if power >= 0 else 1 - power
+    if power >= 0:
+        decimals = max(2 - power, 0)
+    else:
+        decimals = 1 - power
     short = decimals <= MOST_DECIMALS and abs(time) < LONGEST_TIME
-    number = f"{time:.{decimals}f}" if short else f"{time:.{MOST_DECIMALS}g}"
-    unit = field.time_unit if len(field.time_unit) <= UNIT_LENGTH else ""
+    if short:
+        number = f"{time:.{decimals}f}"
+    else:
+        number = f"{time:.{MOST_DECIMALS}g}"
+    if len(field.time_unit) <= UNIT_LENGTH:
+        unit = field.time_unit
+    else:
+        unit = ""
     return f"t = {number} {unit}".strip()
 
 
@@ -121,7 +141,10 @@ def span_since(start: Any, date: Any) -> tuple[float, float]:
     def since(year: int, month: int = 1, day: int = 1, *clock: int) -> float:
         return float((type(start)(year, month, day, *clock, **calendar) - start).total_seconds())
 
-    clock = (*[0] * (6 - len(numbers)), microsecond) if len(numbers) > 3 else ()
+    if len(numbers) > 3:
+        clock = (*[0] * (6 - len(numbers)), microsecond)
+    else:
+        clock = ()
     begin = since(*numbers, *clock)
     if len(numbers) == 1:
         return begin, since(numbers[0] + 1)
@@ -141,10 +164,14 @@ def time_within(start: Any, times: Any, date: Any) -> float:
 
 def expected_times(start: Any, times: Any) -> str:
     """Return the first and the last time of a field as text, as dates if the field has them."""
-    first, last = float(times[0]), float(times[-1])
+    first = float(times[0])
+    last = float(times[-1])
     if start is None:
         return f"{first:g} to {last:g}, the times of the field"
-    step = DAY_S if len(times) < 2 else (last - first) / (len(times) - 1)
+    if len(times) < 2:
+        step = DAY_S
+    else:
+        step = (last - first) / (len(times) - 1)
     return f"{date_text(start, first, step)} to {date_text(start, last, step)}"
 
 
@@ -164,6 +191,9 @@ def date_of(written: Any) -> Any:
     if not calendar:
         return datetime(*numbers)
     # Not all calendars have a year 0, which climatologies begin with.
-    zero = True if numbers[0] == 0 else None
+    if numbers[0] == 0:
+        zero = True
+    else:
+        zero = None
     cftime = import_extra("cftime", "xarray")
     return cftime.datetime(*numbers, calendar=calendar, has_year_zero=zero)

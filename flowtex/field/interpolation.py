@@ -83,8 +83,10 @@ def cell_of(
     number of the cell; fraction of it that lies before the position; distance beyond the nearer
     end, signed, where the axis is not periodic; whole periods, where it is.
     """
-    whole, cells = np.floor(index), count - 1
-    cell, share = whole.astype(np.intp) + start, index - whole
+    whole = np.floor(index)
+    cells = count - 1
+    cell = whole.astype(np.intp) + start
+    share = index - whole
     if periodic:
         turns = cell // cells
         return cell - turns * cells, share, np.zeros_like(share), turns.astype(share.dtype)
@@ -99,7 +101,8 @@ def cell_of(
 
 def cubic_weights(t: Floats) -> tuple[Floats, Floats, Floats, Floats]:
     """Return the Catmull-Rom weights of the four nodes around a fraction of a cell."""
-    t2, t3 = t * t, t * t * t
+    t2 = t * t
+    t3 = t * t * t
     return (
         0.5 * (-t3 + 2 * t2 - t),
         0.5 * (3 * t3 - 5 * t2 + 2),
@@ -119,7 +122,9 @@ def between_nodes(nodal: AnyArray, index: Floats) -> Floats:
 def along_line(line: Floats, index: Floats, *, periodic: bool) -> Floats:
     """Interpolate increasing values (N,) at any index; they continue straight, or by a period."""
     last = len(line) - 1
-    turns = np.floor(index / last) if periodic else 0.0
+    turns = np.zeros_like(index)
+    if periodic:
+        turns = np.floor(index / last)
     inside = scipy.interpolate.make_interp_spline(np.arange(last + 1.0), line, k=1)
     return np.asarray(inside(index - turns * last) + turns * (line[-1] - line[0]))
 
@@ -127,6 +132,9 @@ def along_line(line: Floats, index: Floats, *, periodic: bool) -> Floats:
 def inverse_along_line(line: Floats, values: Floats, *, periodic: bool) -> Floats:
     """Return the index at which :func:`along_line` has these values, for a line from zero."""
     last = len(line) - 1
-    turns = np.floor(values / line[-1]) if periodic else 0.0
+    if periodic:
+        turns = np.floor(values / line[-1])
+    else:
+        turns = 0.0
     inside = scipy.interpolate.make_interp_spline(line, np.arange(last + 1.0), k=1)
     return np.asarray(inside(values - turns * line[-1]) + turns * last)

@@ -84,7 +84,8 @@ def value_point(field: Any, index: ArrayLike) -> SurfacePoint:
         cell = divmod(int(point.nodes[0]), field.shape[1])
         nodes = _cell_nodes(field, cell)
         if not _is_skew(field, _places(field, nodes)):
-            t, s = point.index[0] - cell[0], point.index[1] - cell[1]
+            t = point.index[0] - cell[0]
+            s = point.index[1] - cell[1]
             weights = np.array([(1 - t) * (1 - s), (1 - t) * s, t * (1 - s), t * s])
             return SurfacePoint(point.index, nodes, weights, int(nodes[0]))
     return point
@@ -98,7 +99,9 @@ def _cell_nodes(field: Any, cell: Any) -> Indices:
 def _places(field: Any, nodes: Indices) -> Floats:
     """Return longitudes and latitudes of nodes of a cell, (K, 2), or positions, (K, 3)."""
     points = field.surface.points.reshape(-1, 3)[nodes]
-    return points if field.projection is None else lonlats(field, points)
+    if field.projection is None:
+        return np.asarray(points)
+    return lonlats(field, points)
 
 
 def lonlats(field: Any, points: Floats) -> Floats:
@@ -119,7 +122,10 @@ def turned(lon: Any) -> Any:
 def _is_skew(field: Any, places: Floats) -> bool:
     a, b, c, d = places
     size = max(np.abs(b - a).max(), np.abs(c - a).max())
-    skew = FLAT_TOLERANCE if field.projection is None else EARTH_SKEW
+    if field.projection is None:
+        skew = FLAT_TOLERANCE
+    else:
+        skew = EARTH_SKEW
     return not np.abs(a - b - c + d).max() <= skew * size
 
 
@@ -184,7 +190,8 @@ class Locator:
         _, at, shares = nearest
         going = np.arange(len(points))
         for _ in range(WALK_STEPS):
-            current, before = going, at.copy()
+            current = going
+            before = at.copy()
             for corner in range(3):
                 # On a side the opposite corner has no share.
                 numbers = current[shares[current, corner] <= 0]
@@ -201,7 +208,9 @@ def closest(at: Floats, a: Floats, b: Floats, c: Floats) -> tuple[Floats, Floats
 
     The distance is infinite for triangles without area.
     """
-    u, v, w = b - a, c - a, at - a
+    u = b - a
+    v = c - a
+    w = at - a
     uu, vv, uv, wu = (np.einsum("nc,nc->n", p, q) for p, q in ((u, u), (v, v), (u, v), (w, u)))
     # By the part of v across u long triangles lose no digits.
     lean = uv / np.where(uu > 0, uu, 1.0)
@@ -221,9 +230,11 @@ def closest(at: Floats, a: Floats, b: Floats, c: Floats) -> tuple[Floats, Floats
 
 def _on_border(at: Floats, nodes: Floats) -> Floats:
     """Return shares of the corners (N, 3) at the nearest points of the triangles' sides."""
-    best, result = np.full(len(at), np.inf), np.zeros((len(at), 3))
+    best = np.full(len(at), np.inf)
+    result = np.zeros((len(at), 3))
     for k, n in ((0, 1), (1, 2), (2, 0)):
-        side, away = nodes[:, n] - nodes[:, k], at - nodes[:, k]
+        side = nodes[:, n] - nodes[:, k]
+        away = at - nodes[:, k]
         length = np.maximum(np.sum(side * side, axis=-1), np.finfo(float).tiny)
         share = np.clip(np.sum(away * side, axis=-1) / length, 0.0, 1.0)
         far = np.sum((away - share[:, None] * side) ** 2, axis=-1)
@@ -325,13 +336,15 @@ def _in_parallelogram(
     field: Any, first: int, at: tuple[float, float], tolerance: float
 ) -> tuple[float, float] | None:
     """Return (j, i) of a place in a cell from a node on; LinAlgError if no parallelogram."""
-    surface, counts = field.surface, np.array(field.shape) - 1
+    surface = field.surface
+    counts = np.array(field.shape) - 1
     cell = np.array(divmod(first, field.shape[1]))
     for _ in range(MOST_CELLS):
         places = _places(field, _cell_nodes(field, cell))
         if _is_skew(field, places):
             raise np.linalg.LinAlgError
-        start, sides = places[0], places[[2, 1]] - places[0]
+        start = places[0]
+        sides = places[[2, 1]] - places[0]
         offset = np.array([turned(at[0] - start[0]), at[1] - start[1]])
         within = np.linalg.solve(sides.T, offset)
         beside = cell + np.floor(within).astype(int) * (np.abs(within - 0.5) > 0.5 + ROUNDING)

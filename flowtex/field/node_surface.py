@@ -86,7 +86,10 @@ class NodeSurface:
     @cached_property
     def frame(self) -> Floats | None:
         """Two orthonormal rows that span the surface where it is flat, (2, 3), else ``None``."""
-        nodes = self.points.reshape(-1, 3) if self.valid.all() else self.points[self.valid]
+        if self.valid.all():
+            nodes = self.points.reshape(-1, 3)
+        else:
+            nodes = self.points[self.valid]
         offsets = nodes - self.center
         offsets -= offsets.mean(axis=0)  # the middle of the box need not lie in the plane
         _, _, basis = np.linalg.svd(offsets.T @ offsets)
@@ -102,7 +105,10 @@ class NodeSurface:
     def plane_size(self) -> Floats:
         """Width and height along the frame of a flat surface, (2,)."""
         assert self.frame is not None
-        nodes = self.points.reshape(-1, 3) if self.valid.all() else self.points[self.valid]
+        if self.valid.all():
+            nodes = self.points.reshape(-1, 3)
+        else:
+            nodes = self.points[self.valid]
         # Column by column, which needs no memory for the differences to the middle.
         return np.array([np.ptp(nodes @ axis) for axis in self.frame])
 
@@ -135,7 +141,8 @@ def to_index_space(
     p_i, p_j = tangents
     square = np.einsum("djic,djic->ji", tangents, tangents)
     tiny = COLLAPSED_AREA * float(np.median(square if valid.all() else square[valid]))
-    u, speed = np.empty((*velocity.shape[:-1], 2)), np.empty(velocity.shape[:-1])
+    u = np.empty((*velocity.shape[:-1], 2))
+    speed = np.empty(velocity.shape[:-1])
     squares = np.zeros(2)
     for rows in row_blocks(*valid.shape):
         squares += _project(
@@ -155,9 +162,12 @@ def _project(
     velocity: Floats, p_i: Floats, p_j: Floats, valid: Bools, tiny: float, u: Floats, speed: Floats
 ) -> tuple[float, float]:
     """Write components and speed of nodes, and return squares of all and of the normal part."""
-    g_ii, g_jj, g_ij = dot(p_i, p_i), dot(p_j, p_j), dot(p_i, p_j)
+    g_ii = dot(p_i, p_i)
+    g_jj = dot(p_j, p_j)
+    g_ij = dot(p_i, p_j)
     determinant = g_ii * g_jj - g_ij**2
-    along_i, along_j = dot(velocity, p_i), dot(velocity, p_j)
+    along_i = dot(velocity, p_i)
+    along_j = dot(velocity, p_j)
     flat = (determinant <= COLLAPSED_AREA * g_ii * g_jj) | (g_ii <= tiny) | (g_jj <= tiny)
     safe = np.where(flat, 1.0, determinant)
     u_i = np.where(flat, _alone(along_i, g_ii, tiny), (g_jj * along_i - g_ij * along_j) / safe)

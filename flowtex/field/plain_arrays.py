@@ -134,7 +134,8 @@ def _are_components(first: Any, second: Any) -> bool:
     """Return whether two arrays are u and v; otherwise they are positions and a velocity."""
     if isinstance(first, tuple):
         return False
-    one, other = host_array("u", first), host_array("v", second)
+    one = host_array("u", first)
+    other = host_array("v", second)
     if np.iscomplexobj(other) or one.ndim != other.ndim or one.ndim not in (2, 3):
         return False
     if one.shape == other.shape and one.shape[-1] in COMPONENTS:
@@ -222,11 +223,16 @@ def _joined(components: Sequence[AnyArray], grid: tuple[int, ...] | None) -> Any
     shapes = set(map(np.shape, components))
     complex_part = any(map(np.iscomplexobj, components))
     if len(shapes) > 1 or complex_part:
-        wrong = "complex u + iv is one array" if complex_part else "expected one shape"
+        if complex_part:
+            wrong = "complex u + iv is one array"
+        else:
+            wrong = "expected one shape"
         raise FieldError(f"the components have the shapes {_shapes(components)}; {wrong}")
     if not _fits(first.shape, grid):
         raise FieldError(_misfit("u", first.shape, first.shape, grid))
-    return np.ma.stack(components, -1) if _any_masked(components) else np.stack(components, -1)
+    if _any_masked(components):
+        return np.ma.stack(components, -1)
+    return np.stack(components, -1)
 
 
 def _components_last(velocity: AnyArray, grid: tuple[int, ...] | None) -> AnyArray:

@@ -166,7 +166,8 @@ def _values_at(field: Any, index: ArrayLike, time: Any) -> PointValues:
     def speed(step: Floats) -> Floats:
         return np.asarray(np.linalg.norm(mean(point.corners(step))))
 
-    scale, weights = field.speed_scale, point.weights
+    scale = field.speed_scale
+    weights = point.weights
     values: dict[str, Any] = {
         "position": point.interpolate(field.surface.points),
         "velocity": mean(scale * value(field.velocity)),
@@ -423,7 +424,9 @@ class FieldQuantities:
             if time is not None:
                 raise FieldError(f"z is {z}, but the field lies on the Earth; omit z")
             z, time = None, z
-        place = (x, y) if z is None else (x, y, z)
+        place = [x, y]
+        if z is not None:
+            place.append(z)
         at = np.asarray(place, dtype=float)
         if not np.isfinite(at).all():
             raise FieldError(f"the place is {brief(place)}; expected finite numbers")

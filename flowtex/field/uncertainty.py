@@ -42,7 +42,8 @@ def with_uncertainty(field: Field, value: Any) -> Field:
     scalars = flow.scalars
     if not isinstance(value, str):
         steps = nodal_steps(flow, value, "uncertainty", "the name of a scalar, or ")
-        scalars, value = {**scalars, UNCERTAINTY: steps}, UNCERTAINTY
+        scalars = {**scalars, UNCERTAINTY: steps}
+        value = UNCERTAINTY
     if value not in scalars and spread_name(value) in scalars:
         value = spread_name(value)
     if value not in scalars:
@@ -71,7 +72,10 @@ def nodal_steps(field: Any, value: Any, name: str, other: str = "") -> Floats:
     except (TypeError, ValueError):
         steps = None
     if steps is None or len(steps) not in {1, len(field.times)}:
-        shape = np.shape(value) if not isinstance(value, (bool, dict)) else repr(value)
+        if not isinstance(value, (bool, dict)):
+            shape = np.shape(value)
+        else:
+            shape = repr(value)
         raise FieldError(
             f"{name} is {shape}; expected {other}an array of the shape {field.shape}, or "
             f"{(len(field.times), *field.shape)}"
@@ -82,7 +86,8 @@ def nodal_steps(field: Any, value: Any, name: str, other: str = "") -> Floats:
 def _at_nodes(field: Any, steps: Steps) -> Steps:
     """Return means at the nodes, (T, J, I), of values that belong to cells."""
     if field.triangles is not None:
-        areas, count = norm(field.surface.crosses), field.shape[1]
+        areas = norm(field.surface.crosses)
+        count = field.shape[1]
         flat = map_steps(steps, itemgetter(0))
         return map_steps(nodal_means(flat, field.triangles, areas, count), itemgetter(None))
     return map_steps(steps, _corner_means)

@@ -51,12 +51,16 @@ class Displayed(anywidget.AnyWidget):
         raise NotImplementedError
 
     def _encoded_picture(self) -> tuple[str, str] | None:
-        cell, started = _cell_number(), time.monotonic()
+        cell = _cell_number()
+        started = time.monotonic()
         picture = self._picture(max(MAX_WAIT_S - _waits_of_cells[cell], 0.0))
         _waits_of_cells[cell] += time.monotonic() - started
         if not picture or self.comm is None:
             return None
-        kind = "image/jpeg" if picture.startswith(b"\xff\xd8") else "image/png"
+        if picture.startswith(b"\xff\xd8"):
+            kind = "image/jpeg"
+        else:
+            kind = "image/png"
         return kind, base64.b64encode(picture).decode()
 
     def _repr_mimebundle_(self, **kwargs: Any) -> Any:
@@ -71,7 +75,8 @@ class Displayed(anywidget.AnyWidget):
     def _ipython_display_(self) -> None:
         """Display the widget, unless :func:`flowtex.show` has done so in this very cell."""
         number = _cell_number()
-        shown, self._shown_in = self._shown_in, None
+        shown = self._shown_in
+        self._shown_in = None
         if shown is None or shown != number:
             _display(self)
 
@@ -126,10 +131,16 @@ def _display_still(shown: Any, name: str, *, update: bool = False) -> None:
 
 def _pictures(shown: Any) -> str:
     if isinstance(shown, ipywidgets.Box):
-        direction = "column" if isinstance(shown, ipywidgets.VBox) else "row"
+        if isinstance(shown, ipywidgets.VBox):
+            direction = "column"
+        else:
+            direction = "row"
         style = f"display:flex;flex-direction:{direction};align-items:flex-start;gap:4px"
         return f'<div style="{style}">{"".join(map(_pictures, shown.children))}</div>'
-    picture = shown._encoded_picture() if isinstance(shown, Displayed) else None
+    if isinstance(shown, Displayed):
+        picture = shown._encoded_picture()
+    else:
+        picture = None
     if picture is None:
         return f"<p>{html.escape(repr(shown))}: run this notebook in a browser to see the flow.</p>"
     source = f"data:{picture[0]};base64,{picture[1]}"
@@ -141,7 +152,9 @@ def _pictures(shown: Any) -> str:
 def _displayed_in(shown: Any) -> list[Displayed]:
     if isinstance(shown, ipywidgets.Box):
         return [widget for child in shown.children for widget in _displayed_in(child)]
-    return [shown] if isinstance(shown, Displayed) else []
+    if isinstance(shown, Displayed):
+        return [shown]
+    return []
 
 
 def _display_box(box: Any) -> None:
@@ -156,14 +169,18 @@ def _display_box(box: Any) -> None:
 
 def _shell() -> Any:
     ipython = sys.modules.get("IPython")
-    return ipython.get_ipython() if ipython is not None else None
+    if ipython is not None:
+        return ipython.get_ipython()
+    return None
 
 
 def _kernel_shell() -> Any:
     """Return the shell of a notebook's kernel; Solara's substitute for one displays nothing."""
     shell = _shell()
     shows = hasattr(shell, "display_formatter") and getattr(shell, "kernel", None) is not None
-    return shell if shows else None
+    if shows:
+        return shell
+    return None
 
 
 def _cell_number() -> int | None:

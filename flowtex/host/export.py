@@ -180,7 +180,8 @@ def opened_views(
 ) -> Iterator[tuple[tuple[WebView, ...], dict[str, Any]]]:
     """Yield the views of a mesh, and how they are shown at first: camera and axes."""
     shown, arguments = browser_options(mesh, **options)
-    views, view = web_views(shown, arguments, steps=steps), arguments.view
+    views = web_views(shown, arguments, steps=steps)
+    view = arguments.view
     try:
         camera = view.first_camera(views[0].field.surface).to_dict()
         yield views, {"camera": camera, "axes": view.axes}
@@ -206,7 +207,10 @@ def write_page(
         check_basemap(basemap, path, views)
     contents = contents_of(views, store, **options)
     suffix = path.suffix.lower()
-    pieces = module_pieces if suffix in MODULES else page_pieces
+    if suffix in MODULES:
+        pieces = module_pieces
+    else:
+        pieces = page_pieces
     if basemap is not None:
         pieces = partial(map_pieces, basemap)
     elif suffix == ".json":
@@ -225,7 +229,8 @@ def _with_tiles(scene: ClientData) -> ClientData:
     pyramid = scene.pyramid
     if pyramid is None:
         return scene
-    finest, room = pyramid.depth, float(TILE_BYTES)
+    finest = pyramid.depth
+    room = float(TILE_BYTES)
     surface, step = (
         sum(len(part_text(part)[1]) for part in parts.values())
         for parts in (scene.surface(), scene.step(0))
@@ -270,11 +275,21 @@ def contents_of(
     those of :meth:`ClientData.header`; ``picture`` is a PNG or JPEG that is shown until the page
     has drawn, by default a preview. ``store`` is the address of the store that has the rest.
     """
-    source = "" if store is None else source_of(store)
-    headers, scenes = [], []
+    if store is None:
+        source = ""
+    else:
+        source = source_of(store)
+    headers = []
+    scenes = []
     for view in views:
-        stored = None if store is None else _stored(view)
-        scene = _with_tiles(view.page_data()) if stored is None else linked_data(view, stored)
+        if store is None:
+            stored = None
+        else:
+            stored = _stored(view)
+        if stored is None:
+            scene = _with_tiles(view.page_data())
+        else:
+            scene = linked_data(view, stored)
         header = scene.header(view.scene.settings, time=time, **shown)
         header["name"] = str(title or "") or header["name"]
         header |= {} if axes is None else {"axes": axes}
@@ -290,17 +305,23 @@ def contents_of(
 
 def page_pieces(contents: Contents) -> Iterator[str]:
     """Yield the text of a page piece by piece."""
-    headers, source, picture = contents.headers, contents.source, contents.picture
+    headers = contents.headers
+    source = contents.source
+    picture = contents.picture
     ground = headers[0]["background"]
     if picture is None:
         picture = still.preview_png(
             contents.view, PREVIEW, camera=headers[0]["camera"], time=contents.time, coarser=1
         )
     # A browser has its own colour for light and for dark pages.
-    background = (
-        "Canvas" if ground is None else f"rgb({' '.join(f'{255 * c:.0f}' for c in ground)})"
-    )
-    opened = "flowtexStore.open" if source else ""
+    if ground is None:
+        background = "Canvas"
+    else:
+        background = f"rgb({' '.join(f'{255 * c:.0f}' for c in ground)})"
+    if source:
+        opened = "flowtexStore.open"
+    else:
+        opened = ""
     client = f"\n{client_script(with_store=bool(source))}\nflowtex.openPage({opened});\n"
     parts = (
         f'<script type="text/plain" data-view="{n}" data-part="{html.escape(json.dumps(info))}">'
@@ -429,7 +450,8 @@ def _packed(
             if name in names:  # values of all times are parts of each step
                 continue
             names.add(name)
-            info, text = part_info(name, array), ""
+            info = part_info(name, array)
+            text = ""
             if info["digest"] not in written:
                 written[info["digest"]], text = part_text(array)
             yield n, info | written[info["digest"]], text
@@ -452,11 +474,16 @@ def source_of(store: str) -> str:
     if not parts.scheme and not parts.netloc and re.match(r"[^/\\~\s]", store):
         return "'self'"
     try:
-        host, port = parts.hostname or "", parts.port
+        host = parts.hostname or ""
+        port = parts.port
     except ValueError:
-        host, port = "", None
+        host = ""
+        port = None
     if parts.scheme not in ("http", "https") or not HOST.fullmatch(host):
-        hint = "; s3:// and other object storage have such an address too" if "://" in store else ""
+        if "://" in store:
+            hint = "; s3:// and other object storage have such an address too"
+        else:
+            hint = ""
         raise FieldError(f"store is {store!r}; {EXPECTED}{hint}")
     return f"{parts.scheme}://{host}" + (f":{port}" if port else "")
 
@@ -521,7 +548,10 @@ def check_basemap(basemap: object, path: Path, views: Sequence[WebView]) -> None
         )
     projection = views[0].scene.field.projection
     if projection is None or projection.family != "mercator":
-        shown = "no map" if projection is None else f"the map {projection.name!r}"
+        if projection is None:
+            shown = "no map"
+        else:
+            shown = f"the map {projection.name!r}"
         raise FieldError(
             f"basemap is given, but the flow is on {shown}; web maps are in Mercator's projection: "
             "give projection='mercator', or build the store with it"

@@ -60,7 +60,9 @@ class Feed:
         send: Callable[[Header, list[memoryview]], None],
     ) -> None:
         self.view = view
-        self._moment, self._announce, self._send = moment, announce, send
+        self._moment = moment
+        self._announce = announce
+        self._send = send
         self._lock = ProcessLock()  # the source, and the order of messages
         self._building = ProcessLock()  # one scene is made after the other
         self._order = 0
@@ -194,7 +196,8 @@ class Feed:
         self.settled.set()
 
     def _first(self) -> ClientData:
-        field, nodes = self.view.field, math.prod(self.view.shape)
+        field = self.view.field
+        nodes = math.prod(self.view.shape)
         # The coarse form of triangles is the root of their tiles, which is sent first in any case.
         is_whole = self.view.scene.pyramid is None
         if field.triangles is not None or (is_whole and nodes * len(field.times) <= LARGE_NODES):

@@ -91,7 +91,8 @@ def _size(_: Any, value: Any) -> list[int]:
     try:
         width, height = (int(n) for n in value)
     except (TypeError, ValueError):
-        width, height = -1, 0
+        width = -1
+        height = 0
     if not (0 <= width <= 16384 and 1 <= height <= 16384):
         raise FieldError(f"size is {value!r}; expected (width, height) in pixels, or (0, height)")
     return [width, height]
@@ -319,8 +320,12 @@ class FlowWidget(AppearanceAttributes, SettingTraits, Displayed):
 
     @field.setter
     def field(self, mesh: Any) -> None:
-        reading = FieldOptions() if isinstance(mesh, FlowField) else self._reading
-        before, field = self.field.surface, share_field(read_field(mesh, reading))
+        if isinstance(mesh, FlowField):
+            reading = FieldOptions()
+        else:
+            reading = self._reading
+        before = self.field.surface
+        field = share_field(read_field(mesh, reading))
         for view in self._views:  # all, or none if it does not fit one of them
             view.scene.showing(field, keep_range=False).close()
         for view in self._views:
@@ -379,8 +384,10 @@ class FlowWidget(AppearanceAttributes, SettingTraits, Displayed):
 
     @traitlets.validate("time")
     def _check_time(self, proposal: Any) -> float:
-        times, value = self.field.times, float(proposal["value"])
-        first, last = float(times[0]), float(times[-1])
+        times = self.field.times
+        value = float(proposal["value"])
+        first = float(times[0])
+        last = float(times[-1])
         slack = SLACK * (last - first)
         if not first - slack <= value <= last + slack:
             raise TraitValueError(
@@ -390,7 +397,8 @@ class FlowWidget(AppearanceAttributes, SettingTraits, Displayed):
 
     @traitlets.validate("point")
     def _check_point(self, proposal: Any) -> Any:
-        point, field = proposal["value"], self.field
+        point = proposal["value"]
+        field = self.field
         if point is None or field.triangles is None:
             return point
         try:  # the drawn triangles may differ from those of the field
@@ -410,8 +418,12 @@ class FlowWidget(AppearanceAttributes, SettingTraits, Displayed):
 
     def _announce(self, number: int, header: Header) -> None:
         if len(self._feeds) > 1:
-            own, settings = self._views[1].own_settings, self._views[number].scene.settings
-            values = {name: getattr(settings, name) for name in own} if number else {}
+            own = self._views[1].own_settings
+            settings = self._views[number].scene.settings
+            if number:
+                values = {name: getattr(settings, name) for name in own}
+            else:
+                values = {}
             header = {**header, "differs": list(own), "own": values}
         # Not while the browser's values are being set, which would delay it until after the arrays
         # that belong to it.
@@ -419,14 +431,19 @@ class FlowWidget(AppearanceAttributes, SettingTraits, Displayed):
             shaders = list(self._shaders)
             shaders[number] = header["shaders"]
             self._shaders = shaders
-            trait = "_header_beside" if number else "_header"
+            if number:
+                trait = "_header_beside"
+            else:
+                trait = "_header"
             setattr(self, trait, {**header, "shaders": None})
 
     def _handle_message(self, _: Any, message: Any, buffers: list[memoryview]) -> None:
         """Answer the client; invalid messages are ignored."""
         if not isinstance(message, dict):
             return
-        kind, number, request = message.get("kind"), message.get("view", 0), message.get("request")
+        kind = message.get("kind")
+        number = message.get("view", 0)
+        request = message.get("request")
         for feed in self._feeds:
             feed.acknowledged.set()
             if kind == "ready":
@@ -449,7 +466,9 @@ class FlowWidget(AppearanceAttributes, SettingTraits, Displayed):
                 self._load(feed, request, message)
 
     def _load(self, feed: Feed, request: str, message: Header) -> None:
-        key, steps, mark = message.get("key"), message.get("steps"), message.get("mark", "")
+        key = message.get("key")
+        steps = message.get("steps")
+        mark = message.get("mark", "")
         if not _are_whole(steps):
             return
         if key is None and mark in ("", *MARK_PARTS.values()):
@@ -459,9 +478,11 @@ class FlowWidget(AppearanceAttributes, SettingTraits, Displayed):
 
     def _framed(self, frame: bytes, message: Header) -> bytes:
         image = Image.open(io.BytesIO(frame)).convert("RGB")
-        count, (width, height) = len(self._feeds), (int(side) for side in message["size"])
+        count = len(self._feeds)
+        (width, height) = (int(side) for side in message["size"])
         size = (min(width, MOST_SIDE) // count, min(height, MOST_SIDE))
-        wide, ground = image.width // count, rgb(message["ground"])
+        wide = image.width // count
+        ground = rgb(message["ground"])
         parts = [image.crop((n * wide, 0, (n + 1) * wide, image.height)) for n in range(count)]
         return _side_by_side(
             still_png(
@@ -474,7 +495,9 @@ class FlowWidget(AppearanceAttributes, SettingTraits, Displayed):
         """Return a still of the browser's last frame, or one that NumPy draws."""
         if self._still is not None:
             return self._still
-        width, height, count = self.size[0] or USUAL_WIDTH, self.size[1], len(self._feeds)
+        width = self.size[0] or USUAL_WIDTH
+        height = self.size[1]
+        count = len(self._feeds)
         for feed in self._feeds if timeout_s > 0 else ():
             feed.draw((width // count, height // count), **self._look())  # in the same shape
         stills = [feed.still for feed in self._feeds if feed.still is not None]
@@ -485,7 +508,8 @@ class FlowWidget(AppearanceAttributes, SettingTraits, Displayed):
 
     def _look(self) -> Any:
         """Return arguments of stills: a camera that was not moved fits the shape of the picture."""
-        surface, camera = self.field.surface, Camera.from_dict(dict(self.camera))
+        surface = self.field.surface
+        camera = Camera.from_dict(dict(self.camera))
         is_moved = camera != self._fit(surface, PREVIEW[0] / PREVIEW[1])
         return {
             "camera": lambda aspect: camera if is_moved else self._fit(surface, aspect),
@@ -521,7 +545,10 @@ class FlowWidget(AppearanceAttributes, SettingTraits, Displayed):
             self._set("time", self.scene.time)
 
     def __repr__(self) -> str:
-        state = "closed" if self.comm is None else f"time {self.time:g}"
+        if self.comm is None:
+            state = "closed"
+        else:
+            state = f"time {self.time:g}"
         return f"FlowWidget({self.field!r}, {state})"
 
 

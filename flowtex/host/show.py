@@ -83,7 +83,10 @@ def in_notebook() -> bool:
     if (marimo := sys.modules.get("marimo")) is not None and marimo.running_in_notebook():
         return True
     ipython = sys.modules.get("IPython")
-    shell = ipython.get_ipython() if ipython is not None else None
+    if ipython is not None:
+        shell = ipython.get_ipython()
+    else:
+        shell = None
     return getattr(shell, "kernel", None) is not None
 
 
@@ -92,7 +95,8 @@ def _show_window(mesh: Any, size: tuple[int, int], options: dict[str, Any]) -> N
     from flowtex.scene.scene import make_scenes
 
     bar_options = options.pop("scalar_bar_args", None)
-    arguments, size = Options.split(**options), checked_size(size)
+    arguments = Options.split(**options)
+    size = checked_size(size)
     scenes = make_scenes(mesh, arguments)
     plotter, _ = open_plotter(scenes, arguments.view, size, scalar_bar_args=bar_options)
     plotter.show()

@@ -99,11 +99,15 @@ def still_png(
     drawn, on a ``ground``; otherwise NumPy draws the ``data``. The title has the settings in which
     the view ``differs`` from another.
     """
-    scene, (width, height) = view.scene, size
+    scene = view.scene
+    (width, height) = size
     data = data or view.coarse_data(NODES)
     ground = tuple(ground or data.colours.background or WHITE)
     seen = camera(width / height)
-    frame = scene.whole.surface.frame if seen.parallel and not scene.field.projection else None
+    if seen.parallel and not scene.field.projection:
+        frame = scene.whole.surface.frame
+    else:
+        frame = None
     if axes not in (None, "ticks") or frame is None or not np.allclose(seen.axes[:2], frame):
         frame = None
     look: dict[str, Any] = {"background": ground, "legend": data.colours.bar, "beside": True}
@@ -111,7 +115,8 @@ def still_png(
     look["scale_bar"] = frame is None and axes != "none"
     room = layout(scene, size, seen, **look)
     left, right, row = (0, 0, 0) if frame is None else TICK_ROOM
-    across, down = width - left - right, height - room.above - room.below - row
+    across = width - left - right
+    down = height - room.above - room.below - row
     box = (max(across, 1), max(down, 1))
     if flow is None:
         seen = camera(box[0] / box[1])
@@ -145,7 +150,8 @@ def _drawn(view: WebView, data: ClientData, size: tuple[int, int], camera: Camer
             path = path[np.append(True, np.diff(path, axis=0).any(axis=-1))]
             if len(path) <= ARROW_STEPS:
                 continue
-            tip, back = path[-1], path[-1] - path[-2]
+            tip = path[-1]
+            back = path[-1] - path[-2]
             back *= HEAD * length / max(float(np.hypot(*back)), 1e-9)
             side = HEAD_WIDTH / HEAD * np.array([-back[1], back[0]])
             head = [tuple(p) for p in (tip, tip - back + side, tip - back - side)]
@@ -269,7 +275,8 @@ def encoded(image: Image.Image, exact: Iterable[int] = (), *, is_page: bool = Fa
     palette_image = Image.fromarray(np.ascontiguousarray(picture[::4, ::4])).quantize(160)
     palette_image.putpalette([*(palette_image.getpalette() or [])[: 3 * 160], *exact])
     reduced = Image.fromarray(picture).quantize(palette=palette_image, dither=Image.Dither.NONE)
-    palette, corner = reduced.getpalette() or [], 3 * int(np.asarray(reduced)[0, 0])
+    palette = reduced.getpalette() or []
+    corner = 3 * int(np.asarray(reduced)[0, 0])
     palette[corner : corner + 3] = picture[0, 0].tolist()  # the exact background
     reduced.putpalette(palette)
     file = io.BytesIO()
@@ -290,7 +297,8 @@ def _few_samples(settings: Settings) -> Settings:
 
 def _draw_lines(picture: Image.Image, scene: ClientData, camera: Camera) -> None:
     """Draw the coasts and the graticule of a map over a picture, or of the near side of a globe."""
-    field, size = scene.field, np.array(picture.size)
+    field = scene.field
+    size = np.array(picture.size)
     if field.projection is None:
         return
     draw = ImageDraw.Draw(picture, "RGBA")
@@ -299,7 +307,8 @@ def _draw_lines(picture: Image.Image, scene: ClientData, camera: Camera) -> None
     for option, lines in map_lines(field, has_globe=False).items():
         if not getattr(scene.colours, option):
             continue
-        lines = lines.thinned(spacing) if spacing else lines
+        if spacing:
+            lines = lines.thinned(spacing)
         pixels = pixels_of(lines.points, camera, size)
         if field.surface.on_globe:
             far = np.sum(lines.points * (camera.eye[:3] - camera.eye[3] * lines.points), -1) <= 0
@@ -324,5 +333,8 @@ def _colour(scene: ClientData, picture: Picture, steps: tuple[int, int], between
         return np.asarray(colours.plain)
     before, after = (colours.values[min(step, len(colours.values) - 1)] for step in steps)
     values = before * (1 - between) + after * between
-    nearest = picture.cell if colours.flat else picture.nearest
+    if colours.flat:
+        nearest = picture.cell
+    else:
+        nearest = picture.nearest
     return colours.scale.colours(values.ravel()[nearest])

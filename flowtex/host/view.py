@@ -73,10 +73,15 @@ class WebView:
         own: Collection[str] = (),
         bodies: Bodies | None = None,
     ) -> None:
-        self.scene, self._bodies, self.own = scene, bodies, tuple(own)
+        self.scene = scene
+        self._bodies = bodies
+        self.own = tuple(own)
         self.own_settings = tuple(name for name in own if name in TABLE)
         self._times = even_steps(len(scene.field.times), steps)
-        self._background = None if background is None else rgb(background)
+        if background is None:
+            self._background = None
+        else:
+            self._background = rgb(background)
 
     @property
     def field(self) -> FlowField:
@@ -91,17 +96,21 @@ class WebView:
     def shape(self) -> tuple[int, int]:
         """Rows and columns of nodes of what is sent."""
         pyramid = self.scene.pyramid
-        return self.field.shape if pyramid is None else pyramid.shape(pyramid.depth)
+        if pyramid is None:
+            return self.field.shape
+        return pyramid.shape(pyramid.depth)
 
     def page_data(self) -> ClientData:
         """Return the same with the values of all scalars, for pages without a server."""
-        data, names = self.data(), self.scene.scalar_names
+        data = self.data()
+        names = self.scene.scalar_names
         others = tuple(
             (n, self.scene.scalar_steps(name, data.field))
             for n, name in enumerate(names)
             if name != self.scene.scalar_name
         )
-        colours, settings = replace(data.colours, others=others), self.scene.settings
+        colours = replace(data.colours, others=others)
+        settings = self.scene.settings
         # A client finds the structure of a formula itself.
         is_whole = data.formula is not None
         drawn = [part for name, part in MARK_PARTS.items() if is_whole or getattr(settings, name)]
@@ -127,7 +136,8 @@ class WebView:
 
     def show(self, field: FlowField) -> None:
         """Show another flow in the same way; raises what :meth:`Scene.showing` does."""
-        before, self.scene = self.scene, self.scene.showing(field, keep_range=False)
+        before = self.scene
+        self.scene = self.scene.showing(field, keep_range=False)
         self.scene.follow(before)
 
     def recoloured(self, data: ClientData) -> ClientData:
@@ -143,7 +153,8 @@ def colours_of(
     scene: Scene, field: FlowField, background: tuple[float, float, float] | None
 ) -> Colours:
     """Return the colours of a scene on its field, or on a coarser form of it."""
-    look, name = scene.appearance, scene.scalar_name
+    look = scene.appearance
+    name = scene.scalar_name
     return Colours(
         name=name,
         unit="" if name is None else scene.field.unit_of(name),
@@ -172,7 +183,8 @@ def choices_of(scene: Scene) -> tuple[Header, ...]:
     """Return the scalars that can colour the surface, with their own ranges."""
     choices: list[Header] = []
     for name in scene.scalar_names:
-        (low, high), (least, most) = scene.usual_range(name), scene.scalar_range(name)
+        (low, high) = scene.usual_range(name)
+        (least, most) = scene.scalar_range(name)
         steps = len(scene.field.scalars.get(name, scene.field.velocity))
         choices.append(
             {
@@ -209,7 +221,8 @@ def web_views(mesh: Any, options: Options, *, steps: int | None = None) -> tuple
     """Return the view of a mesh or a field, and one beside it if ``options.view`` asks for it."""
     scenes = make_scenes(mesh, options)
     notify_section(scenes[0].field.section)
-    view, own = options.view, ((), tuple(options.view.beside or ()))
+    view = options.view
+    own = ((), tuple(options.view.beside or ()))
     make = partial(WebView, background=view.background, steps=steps, bodies=options.bodies)
     return tuple(make(scene, own=changes) for scene, changes in zip(scenes, own, strict=False))
 
@@ -221,7 +234,10 @@ def even_steps(count: int, steps: int | None) -> tuple[int, ...]:
     steps = checked_count("steps", steps, expected=f"1 to {count}, the time steps of the field")
     if steps >= count:
         return ()
-    first = 0 if steps > 1 else count - 1
+    if steps > 1:
+        first = 0
+    else:
+        first = count - 1
     return tuple(np.rint(np.linspace(first, count - 1, steps)).astype(int).tolist())
 
 
@@ -234,7 +250,10 @@ class _Tile:
 
     @property
     def nbytes(self) -> int:
-        nodes = 0 if self.textures is None else self.textures.geometry.field.valid.size
+        if self.textures is None:
+            nodes = 0
+        else:
+            nodes = self.textures.geometry.field.valid.size
         return NODE_BYTES * nodes + (0 if self.packing is None else self.packing.nbytes)
 
 
@@ -258,7 +277,8 @@ class TileSource:
     """
 
     def __init__(self, scene: ClientData, budget: int = BUDGET_BYTES) -> None:
-        self.scene, self.generation = scene, next(_generations)
+        self.scene = scene
+        self.generation = next(_generations)
         self._tiles: ByteCache[TileKey, _Tile] = ByteCache(budget)
         self._is_closed = False
 
@@ -280,7 +300,10 @@ class TileSource:
             return {n: part for step in steps for n, part in self.scene.mark(kind, step).items()}
         if key is None:
             scene = self.scene
-            parts = {} if steps else scene.surface()
+            if steps:
+                parts = {}
+            else:
+                parts = scene.surface()
             return parts | {n: part for step in steps for n, part in scene.step(step).items()}
         tile = self.tile(key, steps)
         parts = tile_parts(key, tile, *steps)
@@ -290,7 +313,8 @@ class TileSource:
 
     def tile(self, key: TileKey, steps: Sequence[int]) -> ClientData | None:
         """Return a tile as it is sent, or ``None`` where nothing of it is drawn."""
-        scene, pyramid = self.scene, self.scene.pyramid
+        scene = self.scene
+        pyramid = self.scene.pyramid
         if pyramid is None:
             raise LookupError(f"tile {tuple(key)} does not exist: the surface is sent as a whole")
 
@@ -315,14 +339,21 @@ class TileSource:
     ) -> Future[Parts]:
         """Make parts in a thread; ``Stopped`` once it ``is_over``, or the source is closed."""
         make = partial(self.parts, key, steps, kind)
-        executor = _pool if kind in ("", *PART_GROUPS) else _marks_pool
+        if kind in ("", *PART_GROUPS):
+            executor = _pool
+        else:
+            executor = _marks_pool
         return in_pool(make, lambda: self._is_closed or is_over(), executor)
 
     def tiles(self) -> Iterator[Parts]:
         """Yield the parts of all tiles that are sent without a request, coarse ones first."""
-        scene, steps = self.scene, range(self.scene.steps)
+        scene = self.scene
+        steps = range(self.scene.steps)
         keys: list[TileKey] = []
-        level = [] if scene.pyramid is None else scene.pyramid.children(None)
+        if scene.pyramid is None:
+            level = []
+        else:
+            level = scene.pyramid.children(None)
         while scene.pyramid is not None and level and level[0].level >= scene.finest:
             keys += level
             level = [child for key in level for child in scene.pyramid.children(key)]
@@ -345,7 +376,10 @@ def _group(scene: ClientData, group: str) -> Parts:
     nodes = nodes[np.isfinite(nodes).all(axis=1)]
     directions = np.random.default_rng(0).normal(size=(DIRECTIONS, 3))
     directions = np.concatenate([directions, np.eye(3), -np.eye(3)])
-    farthest = {int((nodes @ d).argmax()) for d in directions} if len(nodes) else set()
+    if len(nodes):
+        farthest = {int((nodes @ d).argmax()) for d in directions}
+    else:
+        farthest = set()
     return {**parts, "position": np.ascontiguousarray(nodes[sorted(farthest)], "<f4")}
 
 
@@ -383,5 +417,7 @@ def client_module() -> str:
 
 def client_script(*, with_store: bool = False) -> str:
     """Return the client as a script that defines ``flowtex``, and ``flowtexStore`` to read one."""
-    names = ("core.js", "store.js") if with_store else ("core.js",)
+    names = ["core.js"]
+    if with_store:
+        names.append("store.js")
     return "".join(asset(name).read_text("utf-8") for name in names)

@@ -107,7 +107,10 @@ def checked_bar_options(options: Mapping[str, Any] | None) -> dict[str, Any]:
 
 def first_arguments(options: Mapping[str, Any]) -> dict[str, Any]:
     """Return the arguments with which PyVista makes a bar, of those that users give."""
-    place = VERTICAL if is_vertical(options) else HORIZONTAL
+    if is_vertical(options):
+        place = VERTICAL
+    else:
+        place = HORIZONTAL
     return {"vertical": True, **DEFAULTS, **place, **options}
 
 
@@ -259,7 +262,8 @@ def _fit_texts(
     options: Mapping[str, Any],
 ) -> Texts:
     """Set the fonts of a bar so that its title fits into the view; return the sizes of texts."""
-    title, label = bar.GetTitleTextProperty(), bar.GetLabelTextProperty()
+    title = bar.GetTitleTextProperty()
+    label = bar.GetLabelTextProperty()
     label_points = options.get("label_font_size", round(points))
     label.SetFontSize(label_points)
     bar.GetAnnotationTextProperty().SetFontSize(label_points)
@@ -292,7 +296,8 @@ def _vertical_box(
     texts: Texts, view: tuple[int, int], options: Mapping[str, Any]
 ) -> tuple[Box, float]:
     """Return the sizes of a vertical bar and the share of its colours in the width."""
-    thick, labels = THICKNESS * texts.em, texts.label_width + 2 * texts.pad
+    thick = THICKNESS * texts.em
+    labels = texts.label_width + 2 * texts.pad
     width = max(texts.title_width, thick + labels) + 2 * texts.pad
     height = max(HEIGHT_SHARE * view[1], LEAST_LINES * texts.em) + texts.title_height
     if "position_x" in options:

@@ -28,9 +28,12 @@ class FlowBar:
     """
 
     def __init__(self, plotter: Any, mapper: FlowMapper, options: Mapping[str, Any]) -> None:
-        self._bars, self._plotter, self._mapper = plotter.scalar_bars, plotter, mapper
+        self._bars = plotter.scalar_bars
+        self._plotter = plotter
+        self._mapper = mapper
         self._options = options
-        self._renderer, self._place = plotter.renderer, plotter.renderers.active_index
+        self._renderer = plotter.renderer
+        self._place = plotter.renderers.active_index
         self.key: str | None = None  #: Key among the bars of the plotter; ``None`` without a bar.
         self._names = ("", "")
         self._shown: tuple[Any, ...] = ()
@@ -104,12 +107,14 @@ class FlowBar:
         if self._mapper.fitted_with != _identities(sharing):  # a mesh has joined or left
             self.fit()
         ends = [_ends(mapper) for mapper in sharing]
-        bar, limits = self._bars[self.key], self._mapper.scalar_range
+        bar = self._bars[self.key]
+        limits = self._mapper.scalar_range
         shown = (bar.GetLookupTable(), limits, ends, settings)
         if shown == self._shown:
             return
         own = self._mapper.lookup_table
-        log_scale, is_mixed = own.log_scale, len(flows) < len(sharing)
+        log_scale = own.log_scale
+        is_mixed = len(flows) < len(sharing)
         table = pv.LookupTable(values=own.values if is_mixed else colours())
         table.scalar_range, table.log_scale = rounded_ends(*limits, log_scale=log_scale), log_scale
         if isinstance(own, NormTable):  # along its bar are places, with the values as texts
@@ -135,7 +140,8 @@ class FlowBar:
 
     def remove(self) -> None:
         """Leave the bar, and remove it if no other shares it."""
-        key, self.key = self.key, None
+        key = self.key
+        self.key = None
         sharing = self._bars._scalar_bar_mappers.get(key, [])
         if self._mapper in sharing:
             sharing.remove(self._mapper)

@@ -152,7 +152,8 @@ class FlowtexComponent:
 
     def _turn_to(self, surface: Surface) -> None:
         """Show all flows from aside if one is seen edge-on from where the camera was pointed."""
-        plotter, renderer = self._plotter, self._plotter.renderer
+        plotter = self._plotter
+        renderer = self._plotter.renderer
         present = read_camera(plotter.camera)
         if present != self._pointed.get(renderer):
             return
@@ -191,7 +192,9 @@ class FlowtexComponent:
 
     def _look_of(self, handle: FlowHandle) -> dict[str, Any]:
         """Return the arguments that reproduce the appearance of a handle."""
-        mapper, prop, image = handle.actor.mapper, handle.actor.prop, handle.scene.image
+        mapper = handle.actor.mapper
+        prop = handle.actor.prop
+        image = handle.scene.image
         name = handle.scene.scalar_name
         colours: dict[str, Any] = {"scalars": False, "color": prop.color}
         if name is not None:
@@ -298,7 +301,8 @@ def open_plotter(
             if labels and len(scenes) > 1:
                 text = difference_text(scene, view.beside or {})
                 label = plotter.add_text(text, font_size=9, color="black")
-                label.prop.background_color, label.prop.background_opacity = "white", 0.8
+                label.prop.background_color = "white"
+                label.prop.background_opacity = 0.8
         if len(scenes) > 1:
             plotter.link_views()
             plotter.subplot(0, 0)
@@ -340,7 +344,10 @@ def read_bodies(plotter: pv.BasePlotter, shown: FlowHandle) -> tuple[Bodies, lis
             left_out.append(f"{name!r} ({reason})")
     if len(labels) > MOST_LABELS:
         left_out.append(f"{len(labels) - MOST_LABELS:,} labels beyond the limit of {MOST_LABELS}")
-    lights = tuple(_lights(renderer)) if meshes else ()
+    if meshes:
+        lights = tuple(_lights(renderer))
+    else:
+        lights = ()
     return Bodies(tuple(meshes), tuple(labels[:MOST_LABELS]), lights), left_out
 
 
@@ -359,7 +366,8 @@ def _actors(plotter: pv.BasePlotter, shown: FlowHandle) -> Iterator[tuple[str, A
 
 def _bodies(actor: Any) -> Iterator[Body]:
     """Yield the faces, the lines and the points of an actor."""
-    mapper, prop = actor.GetMapper(), actor.GetProperty()
+    mapper = actor.GetMapper()
+    prop = actor.GetProperty()
     data = None
     if mapper.GetInputAlgorithm() is not None:
         mapper.GetInputAlgorithm().Update()  # no frame may have been drawn yet
@@ -384,7 +392,10 @@ def _coloured(mesh: pv.DataSet, mapper: Any, prop: vtkProperty) -> pv.PolyData:
     plain.InterpolateScalarsBeforeMappingOff()  # else it maps to a texture
     mapped = plain.MapScalars(mesh, 1.0)  # at points or cells; none without scalars
     copy = mesh.copy(deep=False)
-    normals = mesh.point_data.active_normals if isinstance(mesh, pv.PolyData) else None
+    if isinstance(mesh, pv.PolyData):
+        normals = mesh.point_data.active_normals
+    else:
+        normals = None
     copy.clear_data()
     if mapped is None:
         colours = np.tile(_bytes((*prop.GetColor(), 1.0)), (mesh.n_points, 1))
@@ -396,12 +407,15 @@ def _coloured(mesh: pv.DataSet, mapper: Any, prop: vtkProperty) -> pv.PolyData:
     (copy.point_data if on_points else copy.cell_data)[COLOURS] = colours
     if normals is not None and prop.GetInterpolation():
         copy.point_data.active_normals = normals
-    return copy if isinstance(copy, pv.PolyData) else copy.extract_surface(algorithm=None)
+    if isinstance(copy, pv.PolyData):
+        return copy
+    return copy.extract_surface(algorithm=None)
 
 
 def _parts_of(surface: pv.PolyData, prop: vtkProperty) -> Iterator[Body]:
     """Yield the faces, lines and points of a surface, and the edges of its faces."""
-    style, width = prop.GetRepresentationAsString(), prop.GetLineWidth()
+    style = prop.GetRepresentationAsString()
+    width = prop.GetLineWidth()
     if style == "Points":
         points = surface.cell_data_to_point_data()
         numbers = np.repeat(np.arange(points.n_points)[:, None], 2, axis=1)
@@ -426,14 +440,17 @@ def _parts_of(surface: pv.PolyData, prop: vtkProperty) -> Iterator[Body]:
 
 def _body(mesh: pv.PolyData, cells: Indices, first: int, colour: Any = None, **look: float) -> Body:
     """Return triangles or pieces of lines from a first cell on, apart if cells have colours."""
-    count, normals = cells.shape[1], mesh.point_data.active_normals
+    count = cells.shape[1]
+    normals = mesh.point_data.active_normals
     if COLOURS in mesh.cell_data:
         own = np.asarray(mesh.cell_data[COLOURS])[first : first + len(cells)]
-        colours, used = np.repeat(own, count, axis=0), cells.ravel()
+        colours = np.repeat(own, count, axis=0)
+        used = cells.ravel()
         cells = np.arange(cells.size).reshape(cells.shape)
     else:
         used, numbers = np.unique(cells, return_inverse=True)
-        cells, colours = numbers.reshape(cells.shape), mesh.point_data[COLOURS][used]
+        cells = numbers.reshape(cells.shape)
+        colours = mesh.point_data[COLOURS][used]
     if colour is not None:
         colours = np.concatenate([np.tile(_bytes(colour), (len(used), 1)), colours[:, 3:]], axis=1)
     faces, pieces = (cells if count == k else np.zeros((0, k), np.intp) for k in (3, 2))
@@ -456,18 +473,25 @@ def _bytes(colour: ArrayLike) -> Bytes:
 
 
 def _labels(actor: Any) -> Iterator[Label]:
-    mapper = actor.GetMapper() if actor.IsA("vtkActor2D") else None
+    if actor.IsA("vtkActor2D"):
+        mapper = actor.GetMapper()
+    else:
+        mapper = None
     if mapper is None or not mapper.IsA("vtkLabelPlacementMapper"):
         raise FieldError(f"{actor.GetClassName()}, neither a mesh nor a point label")
     hierarchy = source = mapper.GetInputAlgorithm()
-    name, look = hierarchy.GetLabelArrayName(), hierarchy.GetTextProperty()
+    name = hierarchy.GetLabelArrayName()
+    look = hierarchy.GetTextProperty()
     while source.IsA("vtkPointSetToLabelHierarchy") or source.IsA("vtkSelectVisiblePoints"):
         source = source.GetInputAlgorithm()  # before what hides labels from the present camera
     source.Update()
     points = pv.wrap(source.GetOutputDataObject(0))
     texts = points.GetPointData().GetAbstractArray(name)
     has_plate = mapper.GetShape() != mapper.NONE
-    opacity = mapper.GetBackgroundOpacity() if has_plate else 0.0
+    if has_plate:
+        opacity = mapper.GetBackgroundOpacity()
+    else:
+        opacity = 0.0
     for n, position in enumerate(points.points):
         yield Label(
             str(texts.GetVariantValue(n).ToString()),
@@ -483,7 +507,8 @@ def _lights(renderer: pv.Renderer) -> Iterator[Light]:
     for light in renderer.lights:
         if light.on:
             toward = np.subtract(light.position, light.focal_point)
-            toward = np.array([0.0, 0.0, 1.0]) if light.is_headlight else toward
+            if light.is_headlight:
+                toward = np.array([0.0, 0.0, 1.0])
             color = light.intensity * np.asarray(light.diffuse_color.float_rgb)
             yield Light(
                 _plain(toward / np.linalg.norm(toward)),

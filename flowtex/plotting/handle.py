@@ -34,7 +34,10 @@ FIRST = 1.0  #: Observers of a frame run by falling priority: this one before th
 
 def _state(mesh: Any) -> tuple[int, ...]:
     """Return the time of the last change of meshes, which VTK counts; empty for other data."""
-    meshes = mesh if isinstance(mesh, (list, tuple)) else [mesh]
+    if isinstance(mesh, (list, tuple)):
+        meshes = mesh
+    else:
+        meshes = [mesh]
     blocks = (block for one in meshes if isinstance(one, pv.DataObject) for _, block in leaves(one))
     return tuple(block.GetMTime() for block in blocks)
 
@@ -81,7 +84,8 @@ class FlowHandle(AppearanceAttributes):
         **actor_options: Any,
     ) -> None:
         bar_options = checked_bar_options(scalar_bar_args)
-        mesh, renderer = surface_mesh(scene.textures), plotter.renderer
+        mesh = surface_mesh(scene.textures)
+        renderer = plotter.renderer
         actor = plotter.add_mesh(
             mesh,
             color=scene.appearance.color,
@@ -93,7 +97,9 @@ class FlowHandle(AppearanceAttributes):
         surface = FlowSurface(actor, renderer, scene.textures, scene.settings, scene.pyramid)
         surface.set_moment(*scene.moment)
         end = scene.observe(self._changed)
-        self.scene, self.actor, self.bar = scene, actor, bar
+        self.scene = scene
+        self.actor = actor
+        self.bar = bar
         self._plotter, self._renderer, self._forget = plotter, renderer, forget
         self.surface, self._shown_time, self._end = surface, scene.time, end
         self._shown: Appearance | None = None
@@ -143,7 +149,8 @@ class FlowHandle(AppearanceAttributes):
 
     @density.setter
     def density(self, value: float) -> None:
-        least, expected = float(np.finfo(float).tiny), "a positive number, 1 for a standard screen"
+        least = float(np.finfo(float).tiny)
+        expected = "a positive number, 1 for a standard screen"
         self.surface.view.density = checked_number("density", value, least, expected=expected)
         self._draw()
 
@@ -197,13 +204,15 @@ class FlowHandle(AppearanceAttributes):
 
     def follow_mesh(self, mesh: Any, reading: FieldOptions) -> None:
         """Read a PyVista mesh again before a frame if it has been changed in place."""
-        self._source, self._state = (mesh, reading), _state(mesh)
+        self._source = (mesh, reading)
+        self._state = _state(mesh)
 
     def read_changes(self) -> None:
         """Draw the mesh again if it has changed; a warning says why it cannot be drawn."""
         if self._source is None or self._state == (state := _state(self._source[0])):
             return
-        (mesh, reading), self._state = self._source, state
+        (mesh, reading) = self._source
+        self._state = state
         try:
             field = share_field(read_field(mesh, reading))
             if field is not self.scene.field:
@@ -219,7 +228,9 @@ class FlowHandle(AppearanceAttributes):
         except BaseException:
             scene.close()
             raise
-        old, self.scene, self._shown_time = self.scene, scene, scene.time
+        old = self.scene
+        self.scene = scene
+        self._shown_time = scene.time
         self._end()
         self.surface.show(textures, scene.pyramid, scene.moment)
         self.surface.set_moment(*scene.moment)
@@ -244,7 +255,8 @@ class FlowHandle(AppearanceAttributes):
         """
         if self._plotter is None:
             return
-        plotter, self._plotter = self._plotter, None
+        plotter = self._plotter
+        self._plotter = None
         for subject, tag in self._observed:
             subject.RemoveObserver(tag)
         self._end()
@@ -285,7 +297,8 @@ class FlowHandle(AppearanceAttributes):
 
     def _show_appearance(self, *anew: str) -> None:
         """Follow the appearance where it, or a name in ``anew``, changes; the actor's stays."""
-        old, new = self._shown, self.scene.appearance
+        old = self._shown
+        new = self.scene.appearance
         self._shown = new
 
         def differs(*names: str) -> bool:
@@ -317,7 +330,8 @@ class FlowHandle(AppearanceAttributes):
             self._show_bar()
 
     def _show_colours(self) -> None:
-        mapper, name = self.actor.mapper, self.scene.scalar_name
+        mapper = self.actor.mapper
+        name = self.scene.scalar_name
         mapper.scalar_visibility = name is not None
         if name is None:
             return
@@ -352,5 +366,8 @@ class FlowHandle(AppearanceAttributes):
             self._plotter.render()
 
     def __repr__(self) -> str:
-        state = "removed" if self.closed else f"time {self.time:g}"
+        if self.closed:
+            state = "removed"
+        else:
+            state = f"time {self.time:g}"
         return f"FlowHandle({self.field!r}, {state})"

@@ -78,7 +78,8 @@ class Overlay:
     def __init__(
         self, actor: pv.Actor, renderer: pv.Renderer, scene: Scene, surface: FlowSurface
     ) -> None:
-        self._actor, self._renderer = actor, weakref.ref(renderer)
+        self._actor = actor
+        self._renderer = weakref.ref(renderer)
         self._surface = surface
         self._parts: list[Part] = []
         callback = weak_callback(self._before_frame)
@@ -106,7 +107,9 @@ class Overlay:
     ) -> None:
         """Add lines of a width in pixels; those with ``above`` hide the ones below it."""
         nearer = LINES_NEARER * (1 + ABOVE_SHARE * (above or 0))
-        variant = frozenset() if above is None else frozenset({"FLOWTEX_OPAQUE"})
+        variant: frozenset[str] = frozenset()
+        if above is not None:
+            variant = frozenset({"FLOWTEX_OPAQUE"})
         actor = self._add(forms[-1][1], nearer, "line_", variant, width, forms)
         for name in (OTHER, SIDE):
             actor.mapper.MapDataArrayToVertexAttribute(name, name, POINTS, -1)
@@ -114,7 +117,8 @@ class Overlay:
             actor.ForceTranslucentOn()  # after the flow and its tiles
         else:
             actor.ForceOpaqueOn()  # VTK mixes translucent actors regardless of the order
-        actor.prop.color, actor.prop.opacity = color, opacity
+        actor.prop.color = color
+        actor.prop.opacity = opacity
         actor.prop.lighting = False
 
     def _add(
@@ -152,7 +156,8 @@ class Overlay:
         nearer = 2 * (camera.GetDistance() if camera.GetParallelProjection() else near * far)
         nearer /= far - near
         viewport = [*map(float, renderer.GetOrigin()), *map(float, renderer.GetSize())]
-        height, density = renderer.GetSize()[1], self._surface.view.density
+        height = renderer.GetSize()[1]
+        density = self._surface.view.density
         full_height = self._surface.full_height or height
         whole_height = self._surface.whole_height or full_height
         # Lines of a large picture are wider, not by as much as it is larger.
@@ -199,7 +204,9 @@ class MapOverlay(Overlay):
             self._lines: dict[tuple[str, bool], tuple[tuple[float, pv.PolyData], ...]] = {}
         self._clear()
         self._missing: list[pv.Actor] = []
-        self._scene, self._radius, appearance = scene, None, scene.appearance
+        self._scene = scene
+        self._radius = None
+        appearance = scene.appearance
         if scene.field.projection is None:
             return
         if appearance.land is not None:
@@ -215,7 +222,10 @@ class MapOverlay(Overlay):
             for name, whole in map_lines(self._field, has_globe=has_globe).items():
                 self._lines[name, has_globe] = ()
                 for spacing in SPACINGS:
-                    lines = whole.thinned(spacing) if spacing else whole
+                    if spacing:
+                        lines = whole.thinned(spacing)
+                    else:
+                        lines = whole
                     if len(lines.points):
                         first = np.delete(np.arange(len(lines.points)), lines.starts[1:] - 1)
                         mesh = piece_mesh(lines.points[first], lines.points[first + 1])
@@ -234,7 +244,8 @@ class MapOverlay(Overlay):
             meshes.append((self._mesh_of(ground.missing), -LAND_FARTHER, None))
         self._radius = globe_radius(self._field)
         if self._radius is not None:
-            around, along = 2 * GLOBE_CELLS, GLOBE_CELLS
+            around = 2 * GLOBE_CELLS
+            along = GLOBE_CELLS
             globe = pv.Sphere(radius=self._radius, theta_resolution=around, phi_resolution=along)
             meshes.append((globe, 0.0, None))
         for mesh, nearer, own_color in meshes:
@@ -264,14 +275,16 @@ class MapOverlay(Overlay):
             actor.prop.diffuse = const.DIFFUSE_LIGHT
 
     def _before_frame(self) -> None:
-        renderer, radius = self._renderer(), self._radius
+        renderer = self._renderer()
+        radius = self._radius
         if renderer is not None:
             for actor in self._missing:
                 actor.prop.color = missing_colour(renderer.GetBackground())
         if renderer is not None and radius is not None and self._actor.GetVisibility():
             self._include_globe(renderer.GetActiveCamera(), radius)
             # The length of a pixel on the horizon, the farthest visible point of the globe.
-            view, eye = self._surface.view, self._surface.view.eye
+            view = self._surface.view
+            eye = self._surface.view.eye
             pixel = view.pixel
             if eye[3]:
                 horizon = np.sqrt(max(float(eye[:3] @ eye[:3]) - radius**2, 0.0))
@@ -284,7 +297,8 @@ class MapOverlay(Overlay):
     def _include_globe(self, camera: vtkCamera, radius: float) -> None:
         """Extend the clipping range to the globe, which has no bounds in VTK."""
         near, far = camera.GetClippingRange()
-        matrix, view = pv.array_from_vtkmatrix(self._actor.GetMatrix()), read_camera(camera)
+        matrix = pv.array_from_vtkmatrix(self._actor.GetMatrix())
+        view = read_camera(camera)
         depth = float(np.subtract(matrix[:3, 3], view.position) @ view.axes[2])
         radius *= float(np.linalg.norm(matrix[:3, 0]))
         far = max(far, depth + radius)
@@ -314,7 +328,8 @@ class StructureOverlay(Overlay):
 
     @property
     def _key(self) -> tuple[object, ...]:
-        scene, settings = self._scene, self._scene.settings
+        scene = self._scene
+        settings = self._scene.settings
         counts = settings.critical_points, settings.separatrices, int(settings.nullclines)
         window = self._window
         return id(scene.field), scene.step, *counts, None if window is None else window.tobytes()
@@ -322,7 +337,8 @@ class StructureOverlay(Overlay):
     @property
     def _window(self) -> Floats | None:
         """The part of the plane in which nullclines are drawn, or ``None`` for all of it."""
-        view, renderer = self._surface.view, self._renderer()
+        view = self._surface.view
+        renderer = self._renderer()
         if not self._scene.settings.nullclines or renderer is None:
             return None
         return self._scene.structure.window(view.focus, view.pixel * max(renderer.GetSize()))
@@ -342,13 +358,15 @@ class StructureOverlay(Overlay):
             return
         self._clear()
         self._shown = ()
-        scene, settings = self._scene, self._scene.settings
+        scene = self._scene
+        settings = self._scene.settings
         if not any(getattr(settings, name) for name in STRUCTURE):
             return
         request = (scene.step, settings.critical_points, settings.separatrices)
         if any(request[1:]) and self.notify is not None and not scene.structure.has(*request):
             if self._request != (scene.structure, request):
-                self._request, notify = (scene.structure, request), self.notify
+                self._request = (scene.structure, request)
+                notify = self.notify
                 self._found = _pool.submit(scene.structure.find, *request)
                 renew_after_fork(self)
                 self._found.add_done_callback(lambda _: notify())
@@ -357,5 +375,8 @@ class StructureOverlay(Overlay):
         drawn = strokes(scene.structure, settings, scene.step, self._window)
         for pieces, color, width, above in (stroke for stroke in drawn if len(stroke[0])):
             forms = ((0.0, piece_mesh(pieces[:, 0], pieces[:, 1])),)
-            opacity = RIM_OPACITY if color == RIM_COLOR else 1.0
+            if color == RIM_COLOR:
+                opacity = RIM_OPACITY
+            else:
+                opacity = 1.0
             self._add_lines(forms, width, color, opacity, above=above)

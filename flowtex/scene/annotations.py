@@ -138,7 +138,10 @@ def layout(
         ("title", False, False, writer.texts(title)),
         ("structure", False, True, writer.structure(scene) if legend else iter(())),
     )
-    gap, small, placed, left_out = writer.gap, writer.small, list[Plate](), list[str]()
+    gap = writer.gap
+    small = writer.small
+    placed = list[Plate]()
+    left_out = list[str]()
     strips = [0, 0]  # above and below the flow
     for name, right, low, images in parts:
         image = None
@@ -174,14 +177,24 @@ def write_ticks(
 
     ``ends`` are the coordinates (x, y) of its lower left and its upper right corner.
     """
-    writer, draw = _Writer(picture.size, background, small=True), ImageDraw.Draw(picture)
+    writer = _Writer(picture.size, background, small=True)
+    draw = ImageDraw.Draw(picture)
     left, top, right, bottom = box
     draw.rectangle((left, top, right - 1, bottom - 1), outline="grey")
     for axis, (low, high) in enumerate(np.transpose(ends)):
         for share, text in _value_marks(ColourScale(), low, high):
-            x = left if axis else round(left + share * (right - left))
-            y = round(bottom - share * (bottom - top)) if axis else bottom
-            end = (x - TICK_PX, y) if axis else (x, y + TICK_PX)
+            if axis:
+                x = left
+            else:
+                x = round(left + share * (right - left))
+            if axis:
+                y = round(bottom - share * (bottom - top))
+            else:
+                y = bottom
+            if axis:
+                end = (x - TICK_PX, y)
+            else:
+                end = (x, y + TICK_PX)
             draw.line((x, y, *end), "grey")
             draw.text(
                 (end[0] - 2 * axis, end[1]), text, writer.ink, writer.font, ("ma", "rm")[axis]
@@ -199,15 +212,21 @@ class _Writer:
         *,
         small: bool = False,
     ) -> None:
-        self._size, self._flow_height = size, flow_height or size[1]
-        height, (least, most) = min(size[1], size[0] / WIDEST_ASPECT), SMALL_TEXT_PX
+        self._size = size
+        self._flow_height = flow_height or size[1]
+        height = min(size[1], size[0] / WIDEST_ASPECT)
+        (least, most) = SMALL_TEXT_PX
         self._em = round(height * TEXT_SHARE)
         self.small = small or self._em < most
         if self.small:
             self._em = min(max(round(height * SMALL_TEXT_SHARE), least), most)
         self.font = _font(self._em)
         self._line = sum(self.font.getmetrics())
-        self._thin, closer = self._px(LINE), CLOSER if self.small else 1.0
+        self._thin = self._px(LINE)
+        if self.small:
+            closer = CLOSER
+        else:
+            closer = 1.0
         self.gap, self._pad = self._px(closer * GAP), self._px(closer * PADDING)
         self._background = rgb(background)
         light = is_light(self._background)
@@ -243,7 +262,8 @@ class _Writer:
             scale = found if 0 < found < math.inf else 1.0  # outside the map
         unit_px = scale * self._flow_height / (2 * camera.height)
         length = round_length(SCALE_BAR_WIDTH * self._size[0] / unit_px)
-        unit, across = _printable(scene.field.length_unit), round(length * unit_px)
+        unit = _printable(scene.field.length_unit)
+        across = round(length * unit_px)
         if not across:
             return
         text = length_text(length, unit)
@@ -251,7 +271,8 @@ class _Writer:
         width = max(self._width(text), across)
         image, draw = self._blank(width, self._line + tick)
         self._write(draw, (width - self._width(text)) // 2, 0, text)
-        left, low = self._pad + (width - across) // 2, self._pad + self._line + tick - 1
+        left = self._pad + (width - across) // 2
+        low = self._pad + self._line + tick - 1
         right = left + across - 1
         draw.rectangle((left, low - self._thin + 1, right, low), self.ink)
         for x in (left, right - self._thin + 1):
@@ -260,10 +281,13 @@ class _Writer:
 
     def legends(self, scene: Scene) -> Iterator[Image.Image]:
         """Yield a legend with round values, with every second of these, and with the outer ones."""
-        name, settings, appearance = scene.scalar_name, scene.settings, scene.appearance
+        name = scene.scalar_name
+        settings = scene.settings
+        appearance = scene.appearance
         if name is None or settings.show_level or not appearance.visible:
             return
-        table, title = scene.legend_colours[:, :3], _printable(scene.title_of(name))
+        table = scene.legend_colours[:, :3]
+        title = _printable(scene.title_of(name))
         marks = _value_marks(scene.colour_scale, *scene.legend_limits)
         for n, every in enumerate((1, 2, max(len(marks) - 1, 1))):
             image = self._legend(title, table, marks[::every], scene.beyond)
@@ -272,22 +296,33 @@ class _Writer:
 
     def structure(self, scene: Scene) -> Iterator[Image.Image]:
         """Yield legends of critical points, lines and places without data, in columns."""
-        structure, settings, step = scene.structure, scene.settings, scene.step
-        count, saddles = settings.critical_points, settings.separatrices
-        points = structure.points(step)[:count] if count else ()
+        structure = scene.structure
+        settings = scene.settings
+        step = scene.step
+        count = settings.critical_points
+        saddles = settings.separatrices
+        points: Sequence[Any] = ()
+        if count:
+            points = structure.points(step)[:count]
         found = {point.kind for point in points}
         rows: dict[str, Marks] = {}
         for kind, dot in KIND_MARKS.items():
             if kind in found:
                 rows[kind] = _dot_marks(dot)
-        paths = structure.paths(step, saddles) if saddles else {}
+        if saddles:
+            paths = structure.paths(step, saddles)
+        else:
+            paths = {}
         lines_drawn = {name: color for name, color in LINE_COLORS.items() if paths.get(name)}
         if settings.nullclines:
             lines_drawn |= NULLCLINE_COLORS
         rows |= {name: [("━", color)] for name, color in lines_drawn.items()}
         rows |= self._ground(scene)
         width = max(map(self._width, rows), default=0) + self._line
-        forms = (2, 3, len(rows)) if self.small else (len(rows), 2, 1)
+        if self.small:
+            forms = (2, 3, len(rows))
+        else:
+            forms = (len(rows), 2, 1)
         for lines in dict.fromkeys(min(form, len(rows)) for form in forms if rows):
             wide = math.ceil(len(rows) / lines) * (width + self._line) - self._line
             image, draw = self._blank(wide, lines * self._line)
@@ -322,7 +357,8 @@ class _Writer:
         shares, numbers = zip(*marks, strict=True)
         widest = max(map(self._width, numbers)) + self._px(GAP)
         apart = min(np.diff(shares), default=1.0)
-        high, least = self._px(RAMP_HEIGHT), self._px(RAMP_WIDTH)
+        high = self._px(RAMP_HEIGHT)
+        least = self._px(RAMP_WIDTH)
         # Numbers stand in the middle below their colours, and may reach beyond the first and last.
         aside = self._width(numbers[0]) / 2 - shares[0] * least
         aside = max(aside, 0) + max(self._width(numbers[-1]) / 2 - (1 - shares[-1]) * least, 0)
@@ -337,7 +373,8 @@ class _Writer:
         ramp = np.broadcast_to(table[stops], (high, width, 3))
         shape = Image.new("L", (SMOOTH * width, SMOOTH * high))
         left, right = (high * SMOOTH // 2 if tip else 0 for tip in beyond)
-        (x, y), middle = shape.size, SMOOTH * high / 2
+        (x, y) = shape.size
+        middle = SMOOTH * high / 2
         corners = [(0, middle), (left, 0), (x - right, 0), (x, middle), (x - right, y), (left, y)]
         ImageDraw.Draw(shape).polygon(corners, fill=255)
         image.paste(
@@ -392,7 +429,8 @@ def _printable(text: str) -> str:
 
 
 def _apart(plate: Plate, other: Plate, gap: int) -> bool:
-    (left, top, right, bottom), (to_left, above, to_right, below) = plate.box, other.box
+    (left, top, right, bottom) = plate.box
+    (to_left, above, to_right, below) = other.box
     return max(to_left - right, left - to_right, above - bottom, top - below) >= gap
 
 
@@ -400,16 +438,23 @@ def round_values(low: float, high: float, *, log_scale: bool, steps: Sequence[fl
     """Return three or more round values in a range, or its ends."""
     from matplotlib.ticker import LogLocator, MaxNLocator
 
-    slack = 0.0 if log_scale else BEYOND * (high - low)
+    if log_scale:
+        slack = 0.0
+    else:
+        slack = BEYOND * (high - low)
     values = np.empty(0)
     for most in (3, 4, 5):
         even_locator = MaxNLocator(most, steps=steps)
-        locator = LogLocator(numticks=4) if log_scale else even_locator
+        locator: Any = even_locator
+        if log_scale:
+            locator = LogLocator(numticks=4)
         values = np.asarray(locator.tick_values(low, high))
         values = values[(values >= low - slack) & (values <= high + slack)]
         if len(values) >= 3:
             break
-    return values[:: 1 + len(values) // 6] if len(values) > 1 else np.unique([low, high])
+    if len(values) > 1:
+        return values[:: 1 + len(values) // 6]
+    return np.unique([low, high])
 
 
 def _value_marks(scale: ColourScale, low: float, high: float) -> list[tuple[float, str]]:
@@ -417,7 +462,9 @@ def _value_marks(scale: ColourScale, low: float, high: float) -> list[tuple[floa
     if scale.marks:
         return [(place, text) for _, place, text in scale.marks]
     values = round_values(low, high, log_scale=scale.log_scale, steps=(1, 2, 2.5, 5, 10))
-    scaled = np.log10 if scale.log_scale else np.asarray
+    scaled: Any = np.asarray
+    if scale.log_scale:
+        scaled = np.log10
     ends = scaled([low, high])
     shares = (scaled(values) - ends[0]) / max(ends[1] - ends[0], float(np.finfo(float).tiny))
     return list(zip(map(float, shares), distinct_texts(values), strict=True))
@@ -435,7 +482,8 @@ def length_text(length: float, unit: str) -> str:
     Thousands of metres are kilometres.
     """
     if unit == "m" and length >= METRES_PER_KM:
-        length, unit = length / METRES_PER_KM, "km"
+        length = length / METRES_PER_KM
+        unit = "km"
     plural = len(unit) > 4 and unit.endswith("s") and not unit.endswith(("ss", "ches"))
     return f"{length:.12g} {unit[:-1] if plural and length == 1 else unit}".strip()
 

@@ -55,7 +55,9 @@ EARTH_LINES = ("coastlines", "graticule")  #: Lines of the Earth that are drawn 
 
 def default_cmap(scalars: Any) -> str:
     """Return the colour map of scalars for which none was chosen."""
-    return SIGNED_CMAP if isinstance(scalars, str) and scalars in SIGNED else DEFAULT_CMAP
+    if isinstance(scalars, str) and scalars in SIGNED:
+        return SIGNED_CMAP
+    return DEFAULT_CMAP
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)  # arrays are not compared
@@ -212,7 +214,9 @@ class Appearance:
     def scalar_name(self) -> str | None:
         """Name of the array that colours the surface; ``None`` for a plain one."""
         if self.component is None or not isinstance(self.scalars, str):
-            return self.scalars if isinstance(self.scalars, str) else None
+            if isinstance(self.scalars, str):
+                return self.scalars
+            return None
         return component_name(self.scalars, str(self.component))
 
 
@@ -266,7 +270,10 @@ class AppearanceAttributes:
         if self._is_made and not is_known:
             names = [n for n in dir(type(self)) if not n.startswith("_")]
             setting_hint = f"it is a setting: use settings.{name}"
-            hint = setting_hint if name in TABLE else near_names(name, names)
+            if name in TABLE:
+                hint = setting_hint
+            else:
+                hint = near_names(name, names)
             raise AttributeError(f"{type(self).__name__} has no attribute {name!r}; {hint}")
         super().__setattr__(name, value)
 
@@ -321,7 +328,9 @@ class ViewOptions:
     @property
     def ground(self) -> Any:
         """Colour behind the surface, outside a page."""
-        return "white" if self.background is None else self.background
+        if self.background is None:
+            return "white"
+        return self.background
 
     def first_camera(
         self, surface: Surface, aspect: float = 1.5, margin: float = CAMERA_LIMITS.margin
@@ -378,7 +387,8 @@ class Options:
         array: Any = values.get("scalars")
         is_list = isinstance(array, (list, tuple))  # perhaps of rows of different lengths
         if is_array := "field" in accepted and (is_list or np.ndim(array) > 0):
-            array, values["scalars"] = with_gaps("scalars", array), DATA
+            array = with_gaps("scalars", array)
+            values["scalars"] = DATA
         parts = {
             name: kind(**{n: values.pop(n) for n in accepted.get(name, ()) if n in values})
             for name, kind in _KINDS.items()

@@ -160,7 +160,8 @@ def probe(
     surface = view.field.surface
     place = surface_point(surface, at)
     if not isinstance(pixel, Camera):
-        camera, size = camera_facing(surface, place, pixel), (1, 1)
+        camera = camera_facing(surface, place, pixel)
+        size = (1, 1)
     elif size is None:
         raise FieldError(
             "size is None; expected the width and height of the camera's picture, in pixels"
@@ -178,7 +179,8 @@ def probe(
     if (drawn := textures.geometry.field) is not view.field:
         # A large field is drawn in a coarser form, on which the point has another place.
         nearest, _ = locator(drawn).nearest(field_values.position[None])
-        surface, place = drawn.surface, surface_point(drawn.surface, nearest[0])
+        surface = drawn.surface
+        place = surface_point(drawn.surface, nearest[0])
     fragments = Fragments.of(textures, cover_place(surface, place, camera, size))
     return _Pixel(textures, (before, after), fragments, values, field_values).probe()
 
@@ -195,8 +197,10 @@ class _Pixel:
         field_values: PointValues,
     ) -> None:
         loaded = LoadedTextures.of(textures)
-        self._field_values, self._textures = field_values, textures
-        self._values, self._fragments = values, fragments
+        self._field_values = field_values
+        self._textures = textures
+        self._values = values
+        self._fragments = fragments
         self._level = slice_level(fragments.coordinate, values)
         self._slices = slices_at(textures, steps, values, loaded.mips)
         most_samples = int(const.MOST_STRETCH * values["u_samples"]) + 2
@@ -208,7 +212,8 @@ class _Pixel:
         self._unit = float(self._base[0, 3]) * textures.unit / textures.pace
 
     def probe(self) -> Probe:
-        values, recorder = self._values, self._lookup
+        values = self._values
+        recorder = self._lookup
         value = self._summing.texture(self._fragments.place, self._level, self._fragments.by)[0]
         sides = list(self._sides(1))
         lags = -np.concatenate(recorder.length) / float(sides[0].scale[0])
@@ -243,14 +248,16 @@ class _Pixel:
     def _sides(self, count: int) -> Iterator[Side]:
         """Return the sides of ``count`` copies of the path, which are followed at once."""
         repeated = np.zeros(count, dtype=np.intp)
-        place, level = self._fragments.place[repeated], self._level[repeated]
+        place = self._fragments.place[repeated]
+        level = self._level[repeated]
         return self._summing.sides(place, level, self._base[repeated])
 
     def _path(self, sides: list[Side], knots: Floats, samples: Floats) -> tuple[Floats, Floats]:
         """Return lags in multiples of the unit, and points, of the whole path with its samples."""
         number = np.arange((len(knots) - 1) * POINTS_BETWEEN_SLICES + 1)
         fine = np.interp(number / POINTS_BETWEEN_SLICES, range(len(knots)), knots)
-        lags, displacements = [np.zeros(1)], [np.zeros((1, 3))]
+        lags = [np.zeros(1)]
+        displacements = [np.zeros((1, 3))]
         for side, copies in zip(sides, self._sides(len(fine) + 1), strict=True):
             end = max(float(np.clip(side.reach[0], 0.0, knots[-1])), *(-side.sign * samples))
             lag = np.unique([*fine[fine < end], end])[1:]
@@ -265,10 +272,12 @@ class _Pixel:
 
     def _points(self, displacement: Floats) -> Floats:
         """Return points in space of displacements (N, 3)."""
-        geometry, image = self._textures.geometry, self._textures.image
+        geometry = self._textures.geometry
+        image = self._textures.image
         place = self._fragments.image
         # Relative to the place in double precision, as renderers have the nodes in single.
-        start, surface = self._field_values.position, geometry.field.surface
+        start = self._field_values.position
+        surface = geometry.field.surface
         if image is None or place is None:
             return np.asarray(start + displacement @ geometry.frame)
         first, index = map(image.index, (place.value, place.value + displacement[:, :2]))
@@ -300,7 +309,9 @@ def cover_place(
     inverse = np.linalg.inv(free)
     shares = np.concatenate([-inverse.sum(axis=1, keepdims=True), inverse], axis=1)
     first = np.zeros(1, dtype=np.intp)
-    nodes, weights, cell = place.nodes[None], place.weights[None], np.array([place.cell])
+    nodes = place.nodes[None]
+    weights = place.weights[None]
+    cell = np.array([place.cell])
     return Coverage(first, nodes, weights, shares[:1], shares[1:], cell)
 
 
@@ -341,7 +352,9 @@ class Recorder(Lookup):
     """
 
     def __init__(self, inner: Lookup, most_samples: int) -> None:
-        self.inner, self.spacing, self.level = inner, inner.spacing, inner.level
+        self.inner = inner
+        self.spacing = inner.spacing
+        self.level = inner.level
         #: Arguments of the look-up, sample by sample, (1, 3) and (1,).
         self.displacement: list[Floats] = []
         self.length: list[Floats] = []
@@ -365,8 +378,10 @@ class Recorder(Lookup):
 
     def blend(self, sums: Sums) -> Floats:
         """Blend the values, summed with the weights."""
-        blend, values = self.inner.blend, np.concatenate(self._values)
-        count, weights = len(values), sums.values[:, : len(values)]
+        blend = self.inner.blend
+        values = np.concatenate(self._values)
+        count = len(values)
+        weights = sums.values[:, : len(values)]
         total = float(weights.sum())
         self.weights = weights[0] / total
         # A single sample is a sum of one; a sum of ones has the factor of the mean.

@@ -81,8 +81,10 @@ class FlowSource:
         named = {name: len(words) for name, words in self.axes.items()}
         if not self.ends:
             return named
-        outer = {OUTER: 1} if self.dimensions is None else zip("ijk", self.dimensions, strict=True)
-        return {**named, **dict(outer), **dict.fromkeys(self.ends, CUTS)}
+        outer = {OUTER: 1}
+        if self.dimensions is not None:
+            outer = dict(zip("ijk", self.dimensions, strict=True))
+        return {**named, **outer, **dict.fromkeys(self.ends, CUTS)}
 
     @property
     def alive(self) -> bool:
@@ -103,8 +105,11 @@ class FlowSource:
         found = _ACROSS.fullmatch(cut)
         if found is None or found[1] not in self.ends:
             return None
-        axis, value = found[1], found[2]
-        return self.plane_at(axis, CUTS // 2) if value is None else f"{axis}={value}"
+        axis = found[1]
+        value = found[2]
+        if value is None:
+            return self.plane_at(axis, CUTS // 2)
+        return f"{axis}={value}"
 
     def plane_number(self, plane: str) -> int | None:
         """Return the number of a plane, or of the nearest; ``None`` if it does not exist."""
@@ -117,7 +122,9 @@ class FlowSource:
             number = round(value)
         except (ValueError, OverflowError):
             return None
-        return number if 0 <= number < self.planes.get(axis, 0) else None
+        if 0 <= number < self.planes.get(axis, 0):
+            return number
+        return None
 
     def plane_text(self, plane: str) -> str:
         """Return the text for a plane, such as ``"k = 20"`` or ``"500 hPa"``."""
@@ -125,7 +132,9 @@ class FlowSource:
         words = self.axes.get(axis, ())
         if number.isdecimal() and int(number) < len(words):
             return words[int(number)]
-        return "outer surface" if axis == OUTER else plane.replace("=", " = ")
+        if axis == OUTER:
+            return "outer surface"
+        return plane.replace("=", " = ")
 
     def field(
         self, vectors: str | None = None, plane: str = "", block: str | None = None, **options: Any
@@ -164,9 +173,12 @@ class MeshSource(FlowSource):
         self._parts: dict[str, MeshSource] = {}
         self._lock = ProcessLock()
         self._mesh = mesh
-        self._velocity, self._path, self._block = velocity, path, block
+        self._velocity = velocity
+        self._path = path
+        self._block = block
         if isinstance(mesh, FlowField):
-            self.name, self.nbytes = name or mesh.name, mesh.nbytes
+            self.name = name or mesh.name
+            self.nbytes = mesh.nbytes
         else:
             self._describe(self._first(mesh))
             self.reads_late = parts.is_reader(self._mesh)
@@ -205,8 +217,10 @@ class MeshSource(FlowSource):
         """Return the source of one of the blocks, as :meth:`FlowSource.part` does."""
         if not self.blocks:
             return self
-        if block is not None and block.isdecimal() and int(block) < len(self.blocks):
-            block = self.blocks[int(block)] if block not in self.blocks else block
+        if block is not None and block not in self.blocks and block.isdecimal():
+            number = int(block)
+            if number < len(self.blocks):
+                block = self.blocks[number]
         block = block or self.blocks[0]
         if block not in self.blocks:
             raise FieldError(f"block is {block!r}; expected one of {', '.join(self.blocks)}")
@@ -221,11 +235,9 @@ class MeshSource(FlowSource):
 
     def _errors(self) -> AbstractContextManager[None]:
         """Name the file, where there is one and it is read again."""
-        return (
-            errors_of_file(self._path)
-            if parts.is_reader(self._mesh) and self._path
-            else nullcontext()
-        )
+        if parts.is_reader(self._mesh) and self._path:
+            return errors_of_file(self._path)
+        return nullcontext()
 
     def _describe(self, mesh: Any) -> None:
         self.vectors = self._names(mesh)
@@ -247,20 +259,30 @@ class MeshSource(FlowSource):
 
     def _names(self, grid: Any) -> tuple[str, ...]:
         names = [array.name for array in candidates(grid)]
-        first = grid.active_vectors_name if self._velocity is None else self._velocity
-        preferred = [first] if self._velocity is not None or first in names else []
+        if self._velocity is None:
+            first = grid.active_vectors_name
+        else:
+            first = self._velocity
+        if self._velocity is not None or first in names:
+            preferred = [first]
+        else:
+            preferred = []
         return tuple(dict.fromkeys([*preferred, *names]))
 
     def _first(self, mesh: Any) -> Any:
         """Return the mesh of the first step or block; series that fit stay in memory."""
         series = len(parts.times_of(mesh)) > 1
-        first = parts.read_checked(mesh) if parts.is_reader(mesh) else mesh
+        if parts.is_reader(mesh):
+            first = parts.read_checked(mesh)
+        else:
+            first = mesh
         one = self._block is not None or isinstance(first, (list, tuple))
         if blocks := {} if one else _choices(first, series=series):
             self.blocks = tuple(blocks)
             self.block_vectors = {name: self._names(grid) for name, grid in blocks.items()}
             if not series:
-                self._mesh, self.nbytes = first, sum(map(_bytes, blocks.values()))
+                self._mesh = first
+                self.nbytes = sum(map(_bytes, blocks.values()))
             return next(iter(blocks.values()))
         steps: list[parts.TimeStep] = []
         for step in parts.time_steps(mesh if series else first, self._block):
@@ -268,7 +290,10 @@ class MeshSource(FlowSource):
             self.nbytes += _bytes(step.grid)
             if self.nbytes > MAX_SERIES_BYTES:
                 return steps[0].grid
-        self._mesh = steps[0].grid if len(steps) == 1 else steps
+        if len(steps) == 1:
+            self._mesh = steps[0].grid
+        else:
+            self._mesh = steps
         self._block = None
         return steps[0].grid
 
@@ -280,7 +305,9 @@ def _choices(mesh: Any, *, series: bool) -> parts.Parts:
         return {}
     others = {name: part for name, part in parts.parts_of(mesh).items() if candidates(part)}
     choices = {**drawn, **others}
-    return choices if len(choices) > 1 else {}
+    if len(choices) > 1:
+        return choices
+    return {}
 
 
 def _bytes(grid: Any) -> int:
@@ -295,7 +322,10 @@ class DatasetSource(FlowSource):
         self._datasets = as_datasets(datasets)
         pairs = find_pairs(self._datasets)
         likely = [pair for pair in pairs if pair.rank == pairs[0].rank]
-        pair = likely[0] if pairs else None
+        if pairs:
+            pair = likely[0]
+        else:
+            pair = None
         flow = read_flow(
             self._datasets, FieldOptions(vectors=pair.names if pair else None), Record()
         )
@@ -305,7 +335,8 @@ class DatasetSource(FlowSource):
             flat = projection_of(flow.places, None).name
             self.blocks = tuple(dict.fromkeys((flat, GLOBE, *NAMES)))
             self.block_vectors = dict.fromkeys(self.blocks, self.vectors)
-        self.block_word, self.reads_late = "Map", True
+        self.block_word = "Map"
+        self.reads_late = True
         self.axes = axis_values(first)
         if name := next(iter(self.axes), ""):
             self.default_plane = f"{name}={flow.drawn.numbers.get(name, 0)}"

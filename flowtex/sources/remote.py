@@ -90,7 +90,10 @@ class Reader:
 
     def do_part(self, block: str | None) -> Answer:
         """Describe the choices of a block."""
-        source = self._opened if block is None else self._opened.part(block)
+        if block is None:
+            source = self._opened
+        else:
+            source = self._opened.part(block)
         return {name: getattr(source, name) for name in CHOICES}, []
 
     def do_field(self, **options: Any) -> Answer:
@@ -144,7 +147,9 @@ def unpack_field(
     def unpacked(packed: Any) -> Any:
         if isinstance(packed, dict):
             return LazySteps(int(packed["count"]), read(int(packed["steps"])))
-        return None if packed is None else arrays[packed]
+        if packed is None:
+            return None
+        return arrays[packed]
 
     values = {name: value[name] for name in VALUES}
     values["on_cells"] = tuple(value["on_cells"])
@@ -163,7 +168,8 @@ def unpack_field(
 
 def _check(field: FlowField) -> None:
     """Raise an error if the shapes, types or numbers of nodes do not describe a field."""
-    (rows, columns), steps = field.shape, len(field.times)
+    (rows, columns) = field.shape
+    steps = len(field.times)
     shapes: dict[str, tuple[Steps, tuple[int, ...], str]] = {
         "points": (field.points, (rows, columns, 3), "f"),
         "velocity": (field.velocity, (steps, rows, columns, 3), "f"),
@@ -176,7 +182,10 @@ def _check(field: FlowField) -> None:
         if corners.size and not 0 <= corners.min() <= corners.max() < columns:
             raise ValueError(f"triangles have nodes {corners.min()} to {corners.max()}")
     for name, array in field.scalars.items():
-        count = len(corners) if corners is not None and name in field.on_cells else columns
+        if corners is not None and name in field.on_cells:
+            count = len(corners)
+        else:
+            count = columns
         shapes[name] = (array, (len(array), rows, count), "biuf")
     samples: dict[str, object] = dict(field.volume_values)  # from another process
     for name, sample in samples.items():
@@ -209,7 +218,8 @@ class RemoteSource(FlowSource):
         except (TypeError, KeyError, AttributeError) as error:
             raise FieldError(file.malformed(error)) from error
         self.identity = file.identity
-        self._file, self._block = file, block
+        self._file = file
+        self._block = block
         self._parts: dict[str | None, FlowSource] = {}
 
     @property
@@ -235,7 +245,8 @@ class RemoteSource(FlowSource):
         self, vectors: str | None = None, plane: str = "", block: str | None = None, **options: Any
     ) -> FlowField:
         """Make a field, as :meth:`FlowSource.field` does."""
-        block = self._block if block is None else block
+        if block is None:
+            block = self._block
         field = self._file.field({"vectors": vectors, "plane": plane, "block": block, **options})
         if self.reads_late:
             self._file.check()
@@ -260,7 +271,8 @@ class _OpenFile:
         message = {"do": do, "forgotten": forgotten, **request}
         try:
             answer, arrays = self.child.request(message, timeout=self._timeout)
-            value, warned = answer["value"], answer["warnings"]
+            value = answer["value"]
+            warned = answer["warnings"]
         except ChildError as error:
             raise FieldError(self._fault(error)) from error
         except (TypeError, KeyError) as error:
@@ -284,7 +296,8 @@ class _OpenFile:
             )
 
     def _fault(self, error: ChildError) -> str:
-        path, text = self.paths[0], str(error)
+        path = self.paths[0]
+        text = str(error)
         if error.kind == "FieldError":
             return text
         if error.kind:
@@ -301,7 +314,8 @@ class _RemoteSteps:
     """Reader of steps of a field from the other process, which keeps them while this lives."""
 
     def __init__(self, file: _OpenFile, number: int) -> None:
-        self._file, self._number = file, number
+        self._file = file
+        self._number = number
         weakref.finalize(self, file.forgotten.append, number).atexit = False
 
     def __call__(self, step: int) -> Floats:

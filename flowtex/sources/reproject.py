@@ -123,7 +123,8 @@ def _turned_components(
 
 def _pole_sources(field: FlowField) -> list[tuple[int, Indices]]:
     """Return the nodes at poles where the map has no directions, and the nodes around each."""
-    projection, triangles = _map_of(field), field.triangles
+    projection = _map_of(field)
+    triangles = field.triangles
     lon, lat = _lonlat(field)
     turned_by = projection.positions(lon + 90.0, lat) - projection.positions(lon, lat)
     is_point = (np.abs(lat) > POLE_LATITUDE) & (np.linalg.norm(turned_by, axis=-1) < TEAR_METRES)
@@ -236,7 +237,8 @@ def _with_meridians(lon: Floats, lat: Floats) -> Floats:
 def _lines(lon: Floats, lat: Floats) -> tuple[Floats, Floats] | None:
     """Return the longitude of each column and the latitude of each row; ``None`` if they differ."""
     has_meridian: Bools = np.isfinite(lon) & (np.abs(lat) < POLE_LATITUDE)
-    columns, rows = np.full(lon.shape[1], np.nan), np.full(lon.shape[0], np.nan)
+    columns = np.full(lon.shape[1], np.nan)
+    rows = np.full(lon.shape[0], np.nan)
     for number in range(lon.shape[1]):
         known = lon[has_meridian[:, number], number]
         if len(known):
@@ -256,7 +258,8 @@ def _lines(lon: Floats, lat: Floats) -> tuple[Floats, Floats] | None:
 
 def _cells(field: FlowField, name: str, cells: tuple[Indices, Indices]) -> Any:
     """Return values of cells for the cells between nodes that lie in these cells of a field."""
-    rows, columns = cells[0][:-1, :-1], cells[1][:-1, :-1]
+    rows = cells[0][:-1, :-1]
+    columns = cells[1][:-1, :-1]
     return map_steps(field.scalars[name], lambda step: step[rows, columns])
 
 
@@ -272,6 +275,7 @@ def _joined(field: FlowField, lon: Floats, lat: Floats) -> tuple[Floats, Floats]
     known = np.flatnonzero(np.isfinite(places[:, 0]))
     pairs = scipy.spatial.cKDTree(places[known]).query_pairs(near, output_type="ndarray")
     one, other = known[pairs].T
-    lon, lat = lon.copy(), lat.copy()
+    lon = lon.copy()
+    lat = lat.copy()
     lon[0, other], lat[0, other] = lon[0, one], lat[0, one]
     return lon, lat

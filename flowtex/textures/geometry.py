@@ -54,7 +54,10 @@ class NodeDisplacements:
         self._cells = known[1:, 1:] & known[1:, :-1] & known[:-1, 1:] & known[:-1, :-1]
         #: Twice the nodes without a position before each, in its row and in its column; one more
         #: at such a node.
-        self._unknown = [] if known.all() else [2 * np.cumsum(~known, a) - ~known for a in (1, 0)]
+        if known.all():
+            self._unknown = []
+        else:
+            self._unknown = [2 * np.cumsum(~known, a) - ~known for a in (1, 0)]
 
     def __call__(self, displacement: NDArray[np.floating], error: float = 0.0) -> Floats32:
         """Return displacements (C, J, I) of those (J, I, 2) in cells, up to an error."""
@@ -80,12 +83,15 @@ class NodeDisplacements:
 
     def _parted(self, along_i: Floats32, along_j: Floats32) -> Indices:
         """Return numbers of the nodes between which and their displaced places some are unknown."""
-        (j, i), (by_row, by_column) = (self._j, self._i), self._unknown
+        j = self._j
+        i = self._i
+        (by_row, by_column) = self._unknown
         to_j, to_i = (
             np.clip(at + np.trunc(along + np.copysign(1 - ROUNDING, along)), 0, count - 1)
             for at, along, count in zip((j, i), (along_j, along_i), by_row.shape, strict=True)
         )
-        to_j, to_i = to_j.astype(np.intp), to_i.astype(np.intp)
+        to_j = to_j.astype(np.intp)
+        to_i = to_i.astype(np.intp)
         apart = (by_row[j, i] != by_row[j, to_i]) | (by_column[j, i] != by_column[to_j, i])
         apart |= by_row[to_j, i] != by_row[to_j, to_i]
         apart |= by_column[j, to_i] != by_column[to_j, to_i]
@@ -95,12 +101,14 @@ class NodeDisplacements:
         self, nodes: Indices, along_i: Floats32, along_j: Floats32
     ) -> tuple[Floats32, Bools]:
         """Return displacements (C, N), straight beyond known cells, and whether they end in one."""
-        start, along = np.stack([self._j, self._i])[:, nodes], np.stack([along_j, along_i])
+        start = np.stack([self._j, self._i])[:, nodes]
+        along = np.stack([along_j, along_i])
         most = np.array(self._cells.shape)[:, None] - 1
         share = np.zeros(len(nodes), np.float32)
         is_known = np.ones(len(nodes), dtype=bool)
         for part in np.linspace(0, 1, STEPS + 1, dtype=np.float32)[1:]:
-            place, inside = start + part * along, np.zeros(len(nodes), dtype=bool)
+            place = start + part * along
+            inside = np.zeros(len(nodes), dtype=bool)
             for beside in product((-ROUNDING, ROUNDING), repeat=2):  # on a line between cells
                 cell = np.clip(np.floor(place + np.array(beside)[:, None]), 0, most).astype(np.intp)
                 inside |= self._cells[tuple(cell)]
@@ -136,7 +144,10 @@ class Padding:
         """
         first, end, _ = (drawn or slice(None)).indices(total)
         block = 2**levels
-        before = block if periodic or drawn is not None else 0
+        if periodic or drawn is not None:
+            before = block
+        else:
+            before = 0
         needed = end - first + 2 * before
         return cls(end - first, before, -(-needed // block) * block, periodic, first, total)
 
@@ -233,7 +244,9 @@ class DrawnSurface:
     def frame(self) -> Floats:
         """Rows that take a vector of the mesh to the frame of ``position``, (3, 3)."""
         flat = self.whole.frame
-        return np.eye(3) if flat is None else np.vstack([flat, np.cross(flat[0], flat[1])])
+        if flat is None:
+            return np.eye(3)
+        return np.vstack([flat, np.cross(flat[0], flat[1])])
 
     @cached_property
     def position(self) -> Floats32:
@@ -397,9 +410,12 @@ class SurfaceGeometry(DrawnSurface):
         if self._nearest is not None:
             blank, nearest = self._nearest
             data[blank] = data[nearest]
-        rows, columns = self.rows, self.columns
-        above, before = rows.start, columns.start
-        top, left = above + data.shape[0], before + data.shape[1]
+        rows = self.rows
+        columns = self.columns
+        above = rows.start
+        before = columns.start
+        top = above + data.shape[0]
+        left = before + data.shape[1]
         inner = texels[above:top]
         inner[:, before:left] = data
         inner[:, :before] = data[:, columns.picks[:before] - columns.texels.start]

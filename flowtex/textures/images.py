@@ -92,7 +92,8 @@ def _fractions(array: AnyArray) -> Floats32:
         raise ImageError(
             f"the image has {bad} values that are NaN or infinite; replace them, for example by 0"
         )
-    low, high = float(array.min()), float(array.max())
+    low = float(array.min())
+    high = float(array.max())
     if low < -SLACK or high > 1 + SLACK:
         raise ImageError(
             f"the image's floats range from {low:g} to {high:g}; expected 0 to 1, or uint8"
@@ -130,7 +131,10 @@ def load_image(image: Any) -> Any:
         return image
     path = Path(image).expanduser()
     if not path.is_file():
-        problem = "is a folder" if path.is_dir() else "the file does not exist"
+        if path.is_dir():
+            problem = "is a folder"
+        else:
+            problem = "the file does not exist"
         raise ImageError(f"{image}: {problem}; expected a picture, such as a PNG or a JPEG")
     from PIL import Image, ImageOps
 
@@ -244,7 +248,10 @@ def steps_of(store: SliceStore, index: Floats, texel: Floats) -> Floats32:
         pace = field.index_velocity.speed[0]
         moving = field.valid & (pace > 1e-7 * pace.max())
         by_length = speed / np.where(moving, pace, 1.0)[..., None]
-        speed = fill_blanked(by_length, moving) if moving.any() else np.zeros_like(speed)
+        if moving.any():
+            speed = fill_blanked(by_length, moving)
+        else:
+            speed = np.zeros_like(speed)
     speed = speed * store.unit[..., None]
     crossed = (
         np.stack([between_nodes(speed[..., axis], index) for axis in range(2)], axis=-1) / texel

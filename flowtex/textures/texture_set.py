@@ -76,12 +76,17 @@ class TextureSet:
             raise FieldError(
                 f"the slices have {store.unit.shape} nodes and the field {field.shape}; trace it"
             )
-        least = UNCERTAIN_LAYER if field.uncertainty else 2
+        if field.uncertainty:
+            least = UNCERTAIN_LAYER
+        else:
+            least = 2
         if not least <= len(store.lags) <= MOST_LAGS:
             raise FieldError(
                 f"{len(store.lags)} lags were traced; drawing needs {least} to {MOST_LAGS}"
             )
-        kind = SurfaceGeometry if field.triangles is None else TriangleGeometry
+        kind: type[SurfaceGeometry | TriangleGeometry] = SurfaceGeometry
+        if field.triangles is not None:
+            kind = TriangleGeometry
         textures = cls(kind.of(field), store)
         if image is None:
             return textures
@@ -107,12 +112,16 @@ class TextureSet:
     @property
     def sides(self) -> int:
         """1 when paths lead backward only, 2 when forward too."""
-        return 2 if self.store.two_sided else 1
+        if self.store.two_sided:
+            return 2
+        return 1
 
     @cached_property
     def pace(self) -> float:
         """Nominal length of a unit of ``store.unit``: 1 by arc length, a typical speed by time."""
-        return 1.0 if self.store.parameter == "arclength" else self.typical_speed
+        if self.store.parameter == "arclength":
+            return 1.0
+        return self.typical_speed
 
     @cached_property
     def typical_speed(self) -> float:
@@ -156,7 +165,8 @@ class TextureSet:
         return _critical_cells[field]
 
     def _critical_cell(self, field: FlowField) -> float:
-        corners, cells = field.surface.cell_corners, field.surface.cells
+        corners = field.surface.cell_corners
+        cells = field.surface.cells
         lengths = field.surface.cell_lengths
         # Paths go over sharp edges out of the plane of a triangle, and follow it from farther away.
         at_edge = field.surface.at_edge
@@ -164,7 +174,8 @@ class TextureSet:
         longest = EDGE_CELLS * float(lengths[edge].max(initial=0.0))
         if not field.steady:
             return max(float(lengths[cells].max(initial=0.0)), longest)
-        flow, tangents = field.index_velocity.components[0], field.surface.tangents
+        flow = field.index_velocity.components[0]
+        tangents = field.surface.tangents
         along = flow[..., :1] * tangents[0] + flow[..., 1:] * tangents[1]
         length = norm(along)[..., None]
         along = np.divide(along, length, out=np.zeros_like(along), where=length > 0)
@@ -186,7 +197,8 @@ class TextureSet:
     def layers(self, step: int = 0, dtype: type = np.float16) -> AnyArray:
         """Return texels (layers, H, W, 4) of a destination time, rounded here, not by drivers."""
         all_nodes = self.store.at(step)
-        slices, tangent = all_nodes.part(*self.geometry.texels), self._tangent(all_nodes)
+        slices = all_nodes.part(*self.geometry.texels)
+        tangent = self._tangent(all_nodes)
         result: AnyArray = np.empty((self.count, *self.geometry.size, 4), dtype)
 
         def make(layer: int) -> None:
@@ -211,7 +223,9 @@ class TextureSet:
             result[..., 3] = 1.0 if timed else np.maximum(self._speed(slices), 0.0)
             return result
         side, m = divmod(layer - 1, len(slices.lags))
-        sign, displacement, reach = -1.0, slices.displacement, slices.reach
+        sign = -1.0
+        displacement = slices.displacement
+        reach = slices.reach
         if side and slices.forward is not None and slices.forward_reach is not None:
             sign, displacement, reach = 1.0, slices.forward, slices.forward_reach
         scale = sign / float(slices.lags[m])
@@ -271,7 +285,8 @@ class TextureSet:
         return EdgePaths.of(surface, self.geometry.texels)
 
     def _speed(self, slices: TraceSlices) -> AnyArray:
-        field, step = self.geometry.field, self._step(slices)
+        field = self.geometry.field
+        step = self._step(slices)
         return shown_speed(field, step, self.typical_speed)[self.geometry.texels]
 
     def _step(self, slices: TraceSlices) -> int:
@@ -279,7 +294,8 @@ class TextureSet:
 
     def _tangent(self, slices: TraceSlices) -> AnyArray:
         """Return slopes at lag zero of the nodes in the textures, from the slices of all nodes."""
-        rate, texels = slices.rate[0], self.geometry.texels
+        rate = slices.rate[0]
+        texels = self.geometry.texels
         if self.image is not None:
             return three_components(rate * self.image.by_cell())
         surface = self.geometry.field.surface
@@ -352,7 +368,8 @@ class LayerPrefetch:
 
     def take(self, step: int) -> Halves:
         """Return the layers of a step, (layers, H, W, 4), prepared or computed now."""
-        ready, self._ready = self._ready, None
+        ready = self._ready
+        self._ready = None
         if ready is None or ready[0] != step:
             self._ready = ready
             return self._textures.layers(step)

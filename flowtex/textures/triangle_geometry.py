@@ -124,13 +124,20 @@ class TriangleGeometry(DrawnSurface):
     @property
     def vertex_normals(self) -> Floats32:
         """Unit normals at the vertices, (3 m, 3), in the mesh's own axes."""
-        points, normals = self.points[0][self.triangles], self.normal[0][self.triangles]
+        points = self.points[0][self.triangles]
+        normals = self.normal[0][self.triangles]
         return normals_at_corners(points, normals).astype(np.float32).reshape(-1, 3)
 
     def as_image(self, values: AnyArray, *, on_cells: bool) -> AnyArray:
         """Return values at the vertices (3 m,) as an image of the nodes or triangles, (H, W)."""
-        size = image_size(len(self.triangles)) if on_cells else self.size
-        at = np.repeat(np.arange(len(self.triangles)), 3) if on_cells else self.triangles.ravel()
+        if on_cells:
+            size = image_size(len(self.triangles))
+        else:
+            size = self.size
+        if on_cells:
+            at = np.repeat(np.arange(len(self.triangles)), 3)
+        else:
+            at = self.triangles.ravel()
         image = np.zeros(size, values.dtype)
         image.reshape(-1)[at] = values
         return image

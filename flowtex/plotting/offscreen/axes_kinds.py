@@ -160,7 +160,10 @@ def latitude_text(degrees: float, _position: int | None = None) -> str:
 
 def _room(axis: Any) -> int:
     """Return the number of ticks for which an axis has room: longitudes are wide."""
-    share = WIDE if axis.axis_name == "x" else 1.0
+    if axis.axis_name == "x":
+        share = WIDE
+    else:
+        share = 1.0
     return max(min(MOST_LINES, round(share * axis.get_tick_space())), 1)
 
 
@@ -172,7 +175,9 @@ class _Border(Locator):
     """Crossings of meridians with the lower border of axes (0), or parallels with the left (1)."""
 
     def __init__(self, ax: Axes, projection: Projection, number: int) -> None:
-        self._ax, self._projection, self._number = ax, projection, number
+        self._ax = ax
+        self._projection = projection
+        self._number = number
         self._find = lru_cache(maxsize=1)(self._crossings)  # each tick asks
 
     def crossings(self) -> tuple[Floats, Floats, DegreeText]:
@@ -190,14 +195,18 @@ class _Border(Locator):
 
     def text(self, x: float, _position: int | None = None) -> str:
         places, values, text = self.crossings()
-        return text(values[np.argmin(np.abs(places - x))]) if len(places) else ""
+        if len(places):
+            return text(values[np.argmin(np.abs(places - x))])
+        return ""
 
     def _crossings(
         self, axis_limits: tuple[tuple[float, float], tuple[float, float]], most: int
     ) -> tuple[Floats, Floats, DegreeText]:
         limits = np.array(axis_limits)
-        (start, end), (border, other) = limits[self._number], limits[1 - self._number]
-        along, inwards = np.linspace(start, end, ALONG), np.linspace(border, other, INWARDS)
+        (start, end) = limits[self._number]
+        (border, other) = limits[1 - self._number]
+        along = np.linspace(start, end, ALONG)
+        inwards = np.linspace(border, other, INWARDS)
         grid = np.zeros((ALONG, INWARDS, 3))
         grid[..., self._number], grid[..., 1 - self._number] = along[:, None], inwards
         lon, lat = self._projection.lonlat(grid)
@@ -206,16 +215,22 @@ class _Border(Locator):
         with np.errstate(invalid="ignore"):
             on_map = np.linalg.norm(mapped_back - grid, axis=-1) <= NEAR * np.ptp(limits)
         # A map with an outline begins further in.
-        first, has_place = (np.arange(ALONG), np.argmax(on_map, axis=1)), on_map.any(axis=1)
-        along, lon, lat = along[has_place], lon[first][has_place], lat[first][has_place]
+        first = (np.arange(ALONG), np.argmax(on_map, axis=1))
+        has_place = on_map.any(axis=1)
+        along = along[has_place]
+        lon = lon[first][has_place]
+        lat = lat[first][has_place]
         if len(along) < 2:
             return np.zeros(0), np.zeros(0), longitude_text
         steps = np.diff(lat)
         if self._number == 1 and ((steps >= 0).all() or (steps <= 0).all()):
-            degrees, text = lat, latitude_text
+            degrees = lat
+            text = latitude_text
         else:  # around a pole meridians meet all sides
-            degrees, text = np.unwrap(lon, period=360.0), longitude_text
-        low, high = degrees.min(), degrees.max()
+            degrees = np.unwrap(lon, period=360.0)
+            text = longitude_text
+        low = degrees.min()
+        high = degrees.max()
         room = most * abs(float(np.ptp(along) / np.ptp(limits[self._number])))
         step = _step(high - low, room)
         values = np.arange(math.ceil(low / step), math.floor(high / step) + 1) * step

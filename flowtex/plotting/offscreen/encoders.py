@@ -52,7 +52,9 @@ class MovieError(FieldError):
 
 def default_fps(path: str | Path) -> float:
     """Return the default frames per second; a GIF counts in hundredths of a second."""
-    return 20.0 if checked_path("path", path).suffix.lower() == ".gif" else 30.0
+    if checked_path("path", path).suffix.lower() == ".gif":
+        return 20.0
+    return 30.0
 
 
 def check_movie(path: str | Path, size: Size, fps: float, quality: int = DEFAULT_QUALITY) -> None:
@@ -65,7 +67,10 @@ def check_movie(path: str | Path, size: Size, fps: float, quality: int = DEFAULT
     suffix = path.suffix.lower()
     width, height = checked_size(size, low=0)
     if suffix not in FORMATS:
-        why = f"{path.suffix!r} is not a movie format" if suffix else "the file name has no suffix"
+        if suffix:
+            why = f"{path.suffix!r} is not a movie format"
+        else:
+            why = "the file name has no suffix"
         msg = f"{path}: {why}; expected {', '.join(FORMATS)}"
     elif not (is_number(quality) and 1 <= quality <= 100):
         msg = f"quality is {quality!r}; expected a number from 1 to 100, such as {DEFAULT_QUALITY}"
@@ -106,8 +111,12 @@ class MovieWriter:
 
     def __init__(self, path: str | Path, size: Size, fps: float, quality: int) -> None:
         check_movie(path, size, fps, quality)
-        self._size, self._file = size, WholeFile(Path(path))
-        encode = _encode_mp4 if self._file.part.suffix.lower() == ".mp4" else _encode_by_pillow
+        self._size = size
+        self._file = WholeFile(Path(path))
+        if self._file.part.suffix.lower() == ".mp4":
+            encode = _encode_mp4
+        else:
+            encode = _encode_by_pillow
         self._encoder = encode(self._file, size, fps, quality)
         try:
             next(self._encoder)
@@ -166,8 +175,10 @@ def _encode_mp4(new: WholeFile, size: Size, fps: float, quality: int) -> Encoder
         stream = movie.add_stream("libx264", rate=rate, options=factor)
         (stream.width, stream.height), stream.pix_fmt = size, "yuv420p"
         codec = stream.codec_context
-        codec.colorspace, codec.color_primaries = BT709, BT709
-        codec.color_trc, codec.color_range = SRGB_CURVE, LIMITED
+        codec.colorspace = BT709
+        codec.color_primaries = BT709
+        codec.color_trc = SRGB_CURVE
+        codec.color_range = LIMITED
         while (picture := (yield)) is not None:
             frame = av.VideoFrame.from_ndarray(picture, format="rgb24").reformat(**colours)
             movie.mux(stream.encode(frame))

@@ -103,11 +103,14 @@ def extent(
     >>> flowtex.extent(field, size=(200, 100), margin=0)
     (0.0, 2.0, 0.0, 1.0)
     """
-    chosen, size = Options.split(**options), checked_size(size)
+    chosen = Options.split(**options)
+    size = checked_size(size)
     if chosen.view.beside is not None:
         raise FieldError("beside makes two views, which do not have one common extent; omit it")
     surface = make_scenes(mesh, chosen)[0].whole.surface
-    frame, view, aspect = _frame(surface), chosen.view, size[0] / size[1]
+    frame = _frame(surface)
+    view = chosen.view
+    aspect = size[0] / size[1]
     camera = view.first_camera(surface, aspect, margin)
     if not (camera.parallel and np.allclose(camera.axes[:2], frame, atol=1e-9)):
         raise FieldError(
@@ -185,7 +188,11 @@ def axes(
         )
     chosen = Options.split("field", "appearance", **options)
     image = FlowImage(ax, mesh, chosen, supersampling)
-    image.time, image.clock = image.time if time is None else time, clock
+    if time is None:
+        image.time = image.time
+    else:
+        image.time = time
+    image.clock = clock
     image.set_clip_path(ax.patch)
     ax.add_image(image)
     image.frame_axes()
@@ -242,7 +249,8 @@ def dynamic_map(mesh: Any, *, clock: float = 0.0, supersampling: int = 1, **opti
     field = image.flow
 
     def draw(*moment: float, **plot: Any) -> Any:
-        x, y = plot["x_range"] or (left, right), plot["y_range"] or (bottom, top)
+        x = plot["x_range"] or (left, right)
+        y = plot["y_range"] or (bottom, top)
         size = plot["width"] or FIRST_SIZE[0], plot["height"] or FIRST_SIZE[1]
         # The pixels of a plot are the page's, of which the screen may have several.
         figure.set_dpi(USUAL_DPI * plot["scale"])
@@ -256,7 +264,10 @@ def dynamic_map(mesh: Any, *, clock: float = 0.0, supersampling: int = 1, **opti
 
     text = partial(time_text, field)
     time = hv.Dimension("time", values=field.times.tolist(), value_format=text)
-    kdims = [time] if len(field.times) > 1 else []
+    if len(field.times) > 1:
+        kdims = [time]
+    else:
+        kdims = []
     return hv.DynamicMap(draw, kdims=kdims, streams=[RangeXY(), PlotSize()])
 
 
@@ -331,7 +342,8 @@ class FlowImage(AxesImage):
 
     def _bar_colours(self) -> Colormap:
         """Return the colours of a colour bar, which are those of the picture."""
-        look, scale = self._scene.appearance, self._scene.colour_scale
+        look = self._scene.appearance
+        scale = self._scene.colour_scale
         # As many as the map has, as a norm may return their numbers.
         chosen = colour_map(look.cmap, look.n_colors, flip=look.flip_scalars)
         rows = np.vstack([chosen(np.arange(chosen.N))[:, :3], scale.texels[[0, -2, -1], :3]])
@@ -377,7 +389,8 @@ class FlowImage(AxesImage):
         flow = self._flow
         if scales is not None:
             flow = scales.field(flow, _frame(flow.surface))
-        before, self._scales = self._scene, scales
+        before = self._scene
+        self._scales = scales
         self._scene = before.showing(flow, {}, keep_range=False)
         before.close()
         self._frame = _frame(self._scene.whole.surface)
@@ -391,7 +404,9 @@ class FlowImage(AxesImage):
     def colour_label(self) -> str:
         """Name and unit of the scalars, for a colour bar; empty if the flow has one colour."""
         name = self._scene.scalar_name
-        return "" if name is None else self._scene.title_of(name)
+        if name is None:
+            return ""
+        return self._scene.title_of(name)
 
     @property
     def time(self) -> float:
@@ -449,11 +464,15 @@ class FlowImage(AxesImage):
 
     def _update_title(self) -> None:
         """Show level and time of data of the Earth in the title, unless one has been set."""
-        field, ax = self._scene.field, self.axes
+        field = self._scene.field
+        ax = self.axes
         is_set = ax.get_title() != self._title or ax.get_title("left") or ax.get_title("right")
         if self._projection is not None and not is_set:
             dated = len(field.times) > 1 or field.start is not None
-            time = [time_text(field, self.time)] if dated else []
+            if dated:
+                time = [time_text(field, self.time)]
+            else:
+                time = []
             self._title = ", ".join([*filter(None, [field.name]), *time])
             ax.set_title(self._title)
 
@@ -497,7 +516,8 @@ class FlowImage(AxesImage):
         if not turn:
             return self._draw(corners, size, density)
         surface = self._scene.whole.surface
-        middle, half = self._frame @ surface.center, surface.plane_size / 2
+        middle = self._frame @ surface.center
+        half = surface.plane_size / 2
         shares = (np.arange(size[0]) + 0.5) / size[0]
         x = corners[0, 0] + shares * (corners[1, 0] - corners[0, 0])
         turns = np.floor((x - (middle[0] - half[0])) / turn)
@@ -568,7 +588,8 @@ def _limit(ax: Any, left: float, right: float, bottom: float, top: float) -> Non
         )
     if kind == "polar":  # all around the centre
         left, right = ax.get_xlim()
-        bottom = min(bottom, 0.0) if scale == "linear" else bottom
+        if scale == "linear":
+            bottom = min(bottom, 0.0)
     if ax.get_autoscalex_on():
         ax.set_xlim(*((right, left) if ax.xaxis_inverted() else (left, right)))
     if ax.get_autoscaley_on():

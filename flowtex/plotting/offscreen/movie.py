@@ -83,13 +83,15 @@ def frame_times(
         )
     if field.steady:
         clocks = tuple(duration * n / count for n in range(count))
-        chosen, speed = (settings.speed, settings.speed_in), settings.speed
+        chosen = (settings.speed, settings.speed_in)
+        speed = settings.speed
         if chosen == (TABLE["speed"].default, TABLE["speed_in"].default):
             speed = max(speed, WAVE_PIXELS / duration)
         return FrameTimes((), clocks, fps, duration, closed=True, speed=speed)
     start, end = (np.nan_to_num(field.velocity[step]) for step in (0, -1))
     closed = bool(np.abs(end - start).max() <= SAME_SHARE * max(np.abs(start).max(), 1e-300))
-    first, last = float(field.times[0]), float(field.times[-1])
+    first = float(field.times[0])
+    last = float(field.times[-1])
     times = np.linspace(first, last, max(count, 2), endpoint=not closed)
     return FrameTimes(tuple(map(float, times)), (), fps, duration, closed=closed, speed=0.0)
 
@@ -97,9 +99,12 @@ def frame_times(
 def _seconds(field: FlowField, settings: Settings, seconds: float | None) -> float:
     if seconds is None:
         run = float(np.clip(STEP_S * (len(field.times) - 1), *RUN_S))
-        return settings.period if field.steady else run
+        if field.steady:
+            return settings.period
+        return run
     row = TABLE["period"]
-    low, high = row.low or 0.0, row.high or math.inf
+    low = row.low or 0.0
+    high = row.high or math.inf
     expected = f"a number from {low:g} to {high:g}"
     return checked_number("seconds", seconds, low, high, expected=expected, error=MovieError)
 
@@ -223,7 +228,8 @@ def movie(
     >>> field = flowtex.examples.airfoil_field()
     >>> flowtex.movie(field, "airfoil.mp4", zoom=4, annotations=True)  # doctest: +SKIP
     """
-    fps = default_fps(path) if fps is None else fps
+    if fps is None:
+        fps = default_fps(path)
     check_movie(path, size, fps, quality)
     drawing = {"size": size, "supersampling": supersampling, "annotations": annotations}
     shown, drawn = _prepare(mesh, options, fps, seconds, **drawing)
@@ -232,7 +238,8 @@ def movie(
         for picture in track(drawn, len(shown), "Drawing the movie", show=progress):
             writer.add(picture)
         writer.finish()
-    path, count = Path(path), len(shown)
+    path = Path(path)
+    count = len(shown)
     return Movie(path, path.stat().st_size, size, count, fps, count / fps, shown.closed)
 
 

@@ -120,7 +120,8 @@ class OffscreenPlotter:
     def _reserve(self, size: tuple[int, int]) -> None:
         """Leave room for annotations above and below the flow of a small picture."""
         width, height = size
-        self._rows, ground = slice(0, height), self._plotter.background_color.int_rgb
+        self._rows = slice(0, height)
+        ground = self._plotter.background_color.int_rgb
         self._canvas = np.full((height, width, 3), ground, np.uint8)
         layouts = self._annotate(self._canvas.copy())
         above, below = (max(getattr(each, n) for each in layouts) for n in ("above", "below"))
@@ -156,7 +157,10 @@ def _check_size(size: tuple[int, int], supersampling: int) -> None:
         )
     size = checked_size(size, low=0)
     if not all(1 <= side * supersampling <= LONGEST_SIDE for side in size):
-        times = f" times {supersampling}" if supersampling > 1 else ""
+        if supersampling > 1:
+            times = f" times {supersampling}"
+        else:
+            times = ""
         raise FieldError(
             f"size is {size[0]} x {size[1]}{times}; expected 1 to {LONGEST_SIDE} pixels along "
             "each side: choose a smaller size, or less supersampling"

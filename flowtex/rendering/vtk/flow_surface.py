@@ -530,10 +530,9 @@ class _Arrows:
         mapper = self.actor.mapper
         points = vtkDataObject.FIELD_ASSOCIATION_POINTS
         planar = self.layer.textures.geometry.planar
+        unread = {"flowtexPosition"}
         if planar:
-            unread = ("flowtexPosition", "flowtexNormal")
-        else:
-            unread = ("flowtexPosition",)
+            unread.add("flowtexNormal")
         read = self._data.items()
         repeated = {name: np.repeat(a, count, axis=0) for name, a in read if name not in unread}
         for name, values in {**repeated, RIBBON: np.tile(ribbon, (len(position), 1))}.items():

@@ -115,13 +115,18 @@ def _inspect(path: Path, data: Data, *, whole: bool, is_piece: bool) -> tuple[Pa
     import h5py
 
     # HDF5 may begin after a block of the user.
-    head, is_hdf5, suffix = data[:HEAD_BYTES], h5py.is_hdf5(path), path.suffix.lower()
+    head = data[:HEAD_BYTES]
+    is_hdf5 = h5py.is_hdf5(path)
+    suffix = path.suffix.lower()
     if is_hdf5:
         check_hdf5(path, whole=whole)
     if head.startswith(MAGICS):
         check_netcdf(data, whole=whole)
     elif suffix in NETCDF and not is_hdf5:
-        beginning = f"it begins with {head[:8]!r}" if head else "it is empty"
+        if head:
+            beginning = f"it begins with {head[:8]!r}"
+        else:
+            beginning = "it is empty"
         raise FieldError(f"this is not a NetCDF file: {beginning}; expected 'CDF', or HDF5")
     if head.startswith(GRIB_MAGIC) or suffix.startswith(GRIB_SUFFIXES):
         check_grib(data)
@@ -152,7 +157,8 @@ def check_grib(data: Data) -> None:
     number = 0
     while at >= 0:  # between two messages any bytes may lie
         number += 1
-        label, head = f"message {number}", data[at : at + 16]
+        label = f"message {number}"
+        head = data[at : at + 16]
         check_count(len(head), 16, label)
         length = int.from_bytes(head[8:16] if head[7] == 2 else head[4:7], "big")
         if head[7] == 1 and length >= LONG_MESSAGE:
@@ -213,7 +219,8 @@ def _points(data: Data, at: int, edition: int, end: int, label: str) -> int:
 
     place, most, count, bits = at + 16, 0, 0, 0
     if edition == 1:
-        flags, grid = number(at + 15, 1), at + 8 + number(at + 8, 3)
+        flags = number(at + 15, 1)
+        grid = at + 8 + number(at + 8, 3)
         if not flags & HAS_GRID:
             return 0
         values = grid + number(grid, 3)
@@ -276,10 +283,14 @@ def check_variables(count: int) -> None:
 
 class _Header:
     def __init__(self, data: Data) -> None:
-        self._data, self._at = data, 0
+        self._data = data
+        self._at = 0
         version = self._read(4)[3]
         self._wide = version == 5
-        self._offset = ">I" if version == 1 else ">Q"
+        if version == 1:
+            self._offset = ">I"
+        else:
+            self._offset = ">Q"
         self._records = self._number()
         self._dimensions: list[int] = []
         #: Name, shape and bytes of each variable, of one record if it has records.
@@ -297,11 +308,17 @@ class _Header:
         """Return the declared length of the file in bytes; it has ``size`` bytes."""
         each = [nbytes for _, nbytes, repeated in self._places if repeated]
         # Values are padded to four bytes, except for those of a single variable with records.
-        record = each[0] if len(each) == 1 else sum(-(-nbytes // 4) * 4 for nbytes in each)
+        if len(each) == 1:
+            record = each[0]
+        else:
+            record = sum(-(-nbytes // 4) * 4 for nbytes in each)
         records = self._records
         if records in STREAMING:
             start = min((begin for begin, _, repeated in self._places if repeated), default=size)
-            records = max(size - start, 0) // record if record else 0
+            if record:
+                records = max(size - start, 0) // record
+            else:
+                records = 0
             if records * record + start < size:
                 # The last record is incomplete.
                 records += 1
@@ -325,7 +342,10 @@ class _Header:
         repeated = bool(shape) and shape[0] == 0
         nbytes = SIZES[kind] * math.prod(shape[1:] if repeated else shape)
         self._places.append((begin, nbytes, repeated))
-        times = self._records if repeated and len(shape) == 1 else 1
+        if repeated and len(shape) == 1:
+            times = self._records
+        else:
+            times = 1
         if self._records not in STREAMING:
             self.arrays.append((name, shape, nbytes * times))
 
@@ -384,7 +404,10 @@ def check_hdf5(path: Path, *, whole: bool) -> None:
                     _check_object(h5py, h5py.h5o.open(file.id, path_in), name, whole=whole)
                 elif kind != h5py.h5l.TYPE_SOFT:
                     external = kind == h5py.h5l.TYPE_EXTERNAL
-                    target = file.id.links.get_val(path_in)[0] if external else b"unknown"
+                    if external:
+                        target = file.id.links.get_val(path_in)[0]
+                    else:
+                        target = b"unknown"
                     _refuse(f"{name} is an external link", target.decode(errors="replace"))
     except (OSError, RuntimeError, KeyError, ValueError) as error:
         if isinstance(error, FieldError):
@@ -410,7 +433,8 @@ def _check_object(h5py: Any, item: Any, name: str, *, whole: bool) -> None:
         names = {storage.get_virtual_filename(n) for n in range(storage.get_virtual_count())}
         for target in names - {"."}:
             _refuse(f"{name} is a virtual dataset", target)
-    size, shape = item.get_type().get_size(), item.shape or ()
+    size = item.get_type().get_size()
+    shape = item.shape or ()
     if layout == h5py.h5d.CHUNKED:
         check_memory(size * math.prod(storage.get_chunk()), f"one chunk of {name}")
     if whole and shape and item.get_space().get_simple_extent_dims(1)[0] == h5py.h5s.UNLIMITED:

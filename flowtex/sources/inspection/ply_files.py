@@ -49,7 +49,10 @@ class _Element:
 def check_ply(data: Data) -> None:
     """Raise a FieldError for a header that VTK cannot read, or content that does not match it."""
     begin, order, elements = _header(data)
-    corners = elements["face"].kinds if "face" in elements else {}
+    if "face" in elements:
+        corners = elements["face"].kinds
+    else:
+        corners = {}
     points = elements["vertex"].count
     check_memory(24 * points, "the points")
     for element in elements.values():
@@ -213,12 +216,16 @@ def _check_corners(corners: AnyArray, count: int, points: int, label: str) -> No
     if count < LEAST_CORNERS:
         _damaged(f"{label} has {count} corners; expected {LEAST_CORNERS} or more")
     if corners.size and (corners.min() < 0 or corners.max() >= points):
-        low, high = int(corners.min()), int(corners.max())
+        low = int(corners.min())
+        high = int(corners.max())
         _damaged(f"{label} refers to points {low} to {high}, but there are {points:,}")
 
 
 def _whole(words: list[bytes], at: int, label: str) -> int:
-    word = words[at] if at < len(words) else b""
+    if at < len(words):
+        word = words[at]
+    else:
+        word = b""
     try:
         return int(word)
     except ValueError:

@@ -70,7 +70,8 @@ def check_vtk_xml(path: Path, data: Data, *, is_piece: bool = False) -> list[Pat
     """
     if b"\0" in data[:4]:
         raise FieldError("the file is in UTF-16, which VTK does not write; convert it to UTF-8")
-    document, times = _Document(data), Counter[str]()
+    document = _Document(data)
+    times = Counter[str]()
     # VTK makes the whole of a structured grid, of which the file may have a part.
     copies = max(1, -(-document.whole // max(document.points, 1)))
     for array in document.arrays:
@@ -107,10 +108,12 @@ class _Document:
         self._data = data
         self.arrays: list[_Array] = []
         self.members: list[str] = []
-        self.header, self.compressed = 4, ""
+        self.header = 4
+        self.compressed = ""
         self.order: Literal["little", "big"] = "little"
         #: Begin of the appended data, and whether they are in base64.
-        self._base, self._encoded = len(data), False
+        self._base = len(data)
+        self._encoded = False
         #: Numbers of values of the connectivity of cells, and of those that their offsets need.
         self._joined: dict[tuple[int, str], dict[str, int]] = {}
         #: Bytes of the arrays that VTK makes for the pieces of other files.
@@ -143,10 +146,16 @@ class _Document:
 
     def _start(self, tag: str, attributes: dict[str, str]) -> None:
         self._stop()
-        parent = self._path[-1] if self._path else ""
+        if self._path:
+            parent = self._path[-1]
+        else:
+            parent = ""
         self._path.append(tag)
         if tag == "VTKFile":
-            self.order = "big" if attributes.get("byte_order") == "BigEndian" else "little"
+            if attributes.get("byte_order") == "BigEndian":
+                self.order = "big"
+            else:
+                self.order = "little"
             self.header = 8 if attributes.get("header_type") == "UInt64" else 4
             self.compressed = attributes.get("compressor", "")
         elif tag == "AppendedData":
@@ -204,16 +213,26 @@ class _Document:
     def _array(self, section: str, attributes: dict[str, str]) -> None:
         for key in ("NumberOfComponents", "NumberOfTuples", "offset"):
             _check_whole(key, attributes.get(key, "0"))
-        name, kind = attributes.get("Name", ""), attributes.get("type", "")
+        name = attributes.get("Name", "")
+        kind = attributes.get("type", "")
         bits = _BITS.fullmatch(kind)
-        width = 1 if kind == "Bit" else int(bits[1]) if bits else 8
+        if kind == "Bit":
+            width = 1
+        elif bits:
+            width = int(bits[1])
+        else:
+            width = 8
         values = self._tuples(section, name)
         if section == "FieldData" or values is None:
             declared = attributes.get("NumberOfTuples")
-            values = None if declared is None else _whole(declared)
+            if declared is None:
+                values = None
+            else:
+                values = _whole(declared)
         if values is not None:
             values *= _whole(attributes.get("NumberOfComponents", "1"))
-        begin, name = self._parser.CurrentByteIndex, name or section
+        begin = self._parser.CurrentByteIndex
+        name = name or section
         self.arrays.append(_Array(name, section, width, values, attributes, self._pieces, begin))
 
     def _tuples(self, section: str, name: str = "") -> int | None:
@@ -221,9 +240,11 @@ class _Document:
         count = {key: _whole(self._piece.get(key, "0")) for key in self._piece if key != "Extent"}
         if "Extent" in self._piece:
             sides = _sides(self._piece["Extent"])
-            points, cells = math.prod(sides), _cells(self._piece["Extent"])
+            points = math.prod(sides)
+            cells = _cells(self._piece["Extent"])
         else:
-            sides, points = (), count.get("NumberOfPoints", 0)
+            sides = ()
+            points = count.get("NumberOfPoints", 0)
             cells = sum(count.get(f"NumberOf{tag}", 0) for tag in CELL_TAGS)
         if section == "Coordinates" and sides:
             self._axis += 1
@@ -246,13 +267,17 @@ class _Document:
         """Raise a FieldError if the file has less or more of an array than declared."""
         label = f"the array {array.name}"
         is_topology = array.section in CELL_TAGS and array.name in ("offsets", "connectivity")
-        form, begin = array.attributes.get("format", "ascii").lower(), self._after_tag(array.begin)
+        form = array.attributes.get("format", "ascii").lower()
+        begin = self._after_tag(array.begin)
         if form == "ascii":
             values, end = count_numbers(self._data, array.values, begin, array.end)
             rest, _ = count_numbers(self._data, 1, end, array.end)
             values += rest
             tail = _INTEGER.findall(self._data, max(begin, array.end - 64), array.end)
-            last = int((tail or [b"0"])[-1]) if is_topology else None
+            if is_topology:
+                last = int((tail or [b"0"])[-1])
+            else:
+                last = None
         else:
             place = begin, array.end, True
             if form == "appended":
@@ -262,7 +287,10 @@ class _Document:
                 return  # an empty array may have no header
             block = _Block(self._data, self, place, label)
             values = block.nbytes * 8 // array.bits
-            last = block.last(array.bits // 8) if is_topology else None
+            if is_topology:
+                last = block.last(array.bits // 8)
+            else:
+                last = None
         if array.values is not None:
             check_count(values, array.values, label, "values")
             if values > array.values and array.attributes.get("type") != "String":
@@ -278,7 +306,9 @@ class _Document:
 
     def _after_tag(self, begin: int) -> int:
         match = _TAG.match(self._data, begin)
-        return match.end() if match else begin
+        if match:
+            return match.end()
+        return begin
 
 
 class _Appended(Exception):
@@ -291,10 +321,15 @@ class _Block:
     def __init__(
         self, data: Data, document: _Document, place: tuple[int, int, bool], what: str
     ) -> None:
-        self._data, self._order, self._word = data, document.order, document.header
+        self._data = data
+        self._order = document.order
+        self._word = document.header
         self._begin, end, self._encoded = place
         room = max(end - self._begin, 0)
-        self._room = room * 3 // 4 if self._encoded else room
+        if self._encoded:
+            self._room = room * 3 // 4
+        else:
+            self._room = room
         self._sizes: list[int] = []
         if not document.compressed:
             (self.nbytes,) = self._header(1, what)
@@ -305,7 +340,10 @@ class _Block:
         self._sizes = self._header(3 + blocks, what)[3:]
         check_count(self._room - (3 + blocks) * self._word, sum(self._sizes), what)
         self._last_size = last or full
-        self.nbytes = full * (blocks - 1) + self._last_size if blocks else 0
+        if blocks:
+            self.nbytes = full * (blocks - 1) + self._last_size
+        else:
+            self.nbytes = 0
         check_memory(full, f"one block of {what}")
 
     def last(self, nbytes: int) -> int | None:
@@ -340,7 +378,8 @@ class _Block:
         if head:
             encoded_head = -(-head // 3) * 4
             if self._sizes or b"=" in self._data[begin : begin + encoded_head]:
-                begin, offset = begin + encoded_head, offset - head
+                begin = begin + encoded_head
+                offset = offset - head
         text = self._data[begin + offset // 3 * 4 : begin + -(-(offset + count) // 3) * 4]
         try:
             return base64.b64decode(text)[offset % 3 :][:count]
@@ -371,7 +410,10 @@ def _check_whole(name: str, text: str, most: int | None = None) -> None:
     """Raise a FieldError for a count or number in an attribute that is negative or too large."""
     value = _whole(text)
     if value < 0 or (most is not None and value > most):
-        expected = "0 or more" if most is None else f"0 to {most:,}"
+        if most is None:
+            expected = "0 or more"
+        else:
+            expected = f"0 to {most:,}"
         raise FieldError(
             f"the file is damaged: {name} is {text[:40]!r}; expected {expected}. Write or copy it "
             "again"
@@ -381,7 +423,9 @@ def _check_whole(name: str, text: str, most: int | None = None) -> None:
 def _whole(word: str) -> int:
     """Return a whole number as VTK reads it: 0 for other words."""
     match = re.match(r"\s*[+-]?\d{1,20}", word)
-    return int(match.group()) if match else 0
+    if match:
+        return int(match.group())
+    return 0
 
 
 def _refuse_entity(name: str, *_: object) -> None:

@@ -51,7 +51,8 @@ class _Legacy:
     """One pass through a file as by VTK's reader, which refuses unknown content."""
 
     def __init__(self, data: Data) -> None:
-        self._data, self._at = data, 0
+        self._data = data
+        self._at = 0
         head = (self._line() or b"").removeprefix(MAGIC)
         version = re.fullmatch(rb"\s*(\d+)\.\d+\s*", head)
         if version is None:
@@ -73,8 +74,13 @@ class _Legacy:
     def _word(self) -> bytes:
         """Return the next word, empty at the end."""
         match = WORD.search(self._data, self._at)
-        self._at = match.end() if match else len(self._data)
-        return match.group() if match else b""
+        if match:
+            self._at = match.end()
+        else:
+            self._at = len(self._data)
+        if match:
+            return match.group()
+        return b""
 
     def _is_next(self, beginning: bytes) -> bool:
         match = WORD.search(self._data, self._at)
@@ -82,14 +88,19 @@ class _Legacy:
 
     def _line(self) -> bytes | None:
         """Return the rest of the line without its end, ``None`` at the end of the file."""
-        begin, length = self._at, len(self._data)
+        begin = self._at
+        length = len(self._data)
         stop = self._data.find(b"\n", begin)
-        stop = length if stop < 0 else stop
+        if stop < 0:
+            stop = length
         self._at = min(stop + 1, length)
-        return None if begin == length else self._data[begin:stop].removesuffix(b"\r")
+        if begin == length:
+            return None
+        return self._data[begin:stop].removesuffix(b"\r")
 
     def _skip(self, count: int) -> bytes:
-        begin, self._at = self._at, min(self._at + count, len(self._data))
+        begin = self._at
+        self._at = min(self._at + count, len(self._data))
         return self._data[begin : self._at]
 
     def _number(self) -> int:
@@ -157,7 +168,8 @@ class _Legacy:
                 self._array(keyword, self._word(), count, components)
 
     def _cells(self, word: bytes) -> None:
-        first, second = self._count(word), self._count(word)
+        first = self._count(word)
+        second = self._count(word)
         if self._version < 5:
             self._array(word, b"int", second, 1)
             self._check_sizes(word.decode(errors="replace"), first)
@@ -231,12 +243,14 @@ class _Legacy:
         if name == b"NULL_ARRAY":
             return
         check_count(int(bool(name)), 1, "FIELD", "arrays more")
-        components, tuples = self._count(name), self._count(name)
+        components = self._count(name)
+        tuples = self._count(name)
         self._array(b"FIELD " + name, self._word(), tuples, components)
 
     def _array(self, name: bytes, kind: bytes, tuples: int, components: int) -> None:
         """Skip the values of an array, which must have as many as it declares."""
-        kind, label = kind.lower(), name.decode(errors="replace")
+        kind = kind.lower()
+        label = name.decode(errors="replace")
         values = tuples * components
         size = next((size for start, size in TYPES.items() if kind.startswith(start)), 0)
         if kind.startswith((b"string", b"utf8_string", b"variant")):
@@ -276,7 +290,10 @@ class _Legacy:
         """Skip texts: lines, or bytes after their number."""
         self._line()
         for number in range(values):
-            head = self._line() if lines else self._skip(1) or None
+            if lines:
+                head = self._line()
+            else:
+                head = self._skip(1) or None
             if head is None:
                 check_count(number, values, label, "texts")
             elif not lines:
@@ -302,6 +319,9 @@ def _polyhedron_fault(number: int) -> FieldError:
 
 
 def _refuse(word: bytes, expected: str) -> NoReturn:
-    fault = f"has {word[:40].decode(errors='replace')!r}" if word else "ends"
+    if word:
+        fault = f"has {word[:40].decode(errors='replace')!r}"
+    else:
+        fault = "ends"
     text = "the file is truncated or damaged"
     raise FieldError(f"{text}: it {fault} where {expected} was expected; write or copy it again")

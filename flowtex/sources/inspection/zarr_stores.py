@@ -109,7 +109,10 @@ def _check_node(node: Any, name: str) -> None:
             )
     _check_sizes(node, name)
     for holder in (node, node.get("consolidated_metadata")):
-        members = holder.get("metadata") if isinstance(holder, dict) else None
+        if isinstance(holder, dict):
+            members = holder.get("metadata")
+        else:
+            members = None
         if isinstance(members, dict):
             for key, member in members.items():
                 if not key.endswith(ATTRIBUTES):

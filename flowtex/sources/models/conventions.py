@@ -9,7 +9,7 @@ from __future__ import annotations
 import re
 from collections.abc import Container, Iterator, Mapping, Sequence
 from importlib.util import find_spec
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -84,7 +84,10 @@ def _ugrid(variables: Mapping[str, xr.DataArray]) -> Iterator[Mesh]:
         x, y = (variables[name] for name in names)
         if _is_latitude(x):
             x, y = y, x
-        kind = "SCHISM" if str(topology.name).startswith("SCHISM") else "UGRID"
+        if str(topology.name).startswith("SCHISM"):
+            kind = "SCHISM"
+        else:
+            kind = "UGRID"
         yield Mesh(kind, x, y, corners, first=int(corners.attrs.get("start_index", 0)))
 
 
@@ -101,7 +104,8 @@ def _of_models(variables: Mapping[str, xr.DataArray]) -> Iterator[Mesh]:
         for x, y in coordinates:
             if x not in variables or y not in variables:
                 continue
-            longitude, latitude = variables[x], variables[y]
+            longitude = variables[x]
+            latitude = variables[y]
             values = np.asarray(values_in(longitude), dtype=float)
             # Models write unused coordinates as zeros.
             varies = np.nanmax(values, initial=-np.inf) > np.nanmin(values, initial=np.inf)
@@ -122,7 +126,8 @@ def _bounded(variables: Mapping[str, xr.DataArray]) -> Iterator[Mesh]:
             name_y = str(y.attrs.get("bounds", y.encoding.get("bounds", "")))
             if y.dims != x.dims or name_y not in variables or not _is_latitude(y):
                 continue
-            bounds_x, bounds_y = variables[name], variables[name_y]
+            bounds_x = variables[name]
+            bounds_y = variables[name_y]
             if bounds_x.ndim == 2 and bounds_x.dims == bounds_y.dims and bounds_x.shape[1] >= 3:
                 units = {"units": x.attrs.get("units", "")}
                 a, b = (c.assign_attrs(units | c.attrs) for c in (bounds_x, bounds_y))
@@ -145,7 +150,13 @@ def _renamed(ds: xr.Dataset, mesh: Mesh) -> xr.Dataset:
         if ours in ds.dims or not theirs:
             continue
         alike = [d for d in ds.dims if ds.sizes[d] == sizes[theirs] and d not in (NODES, FACES)]
-        dim = theirs if theirs in ds.dims else alike[0] if len(alike) == 1 else None
+        dim: Any
+        if theirs in ds.dims:
+            dim = theirs
+        elif len(alike) == 1:
+            dim = alike[0]
+        else:
+            dim = None
         if dim is not None:
             ds = ds.rename_dims({dim: ours})
     return ds
@@ -202,7 +213,10 @@ def with_points(datasets: Sequence[xr.Dataset]) -> list[xr.Dataset]:
             continue
         kind = next((str(k) for ds in datasets if (k := ds.attrs.get("featureType"))), "")
         if (times and len(values) > 1) or kind.lower() in PATHS:
-            why = f"along {times[0]}" if times else f"of the type {kind!r}"
+            if times:
+                why = f"along {times[0]}"
+            else:
+                why = f"of the type {kind!r}"
             raise FieldError(
                 f"{x.name} and {y.name} are positions {why}: a trajectory, or points that move; "
                 "interpolate the values to a grid, or select one time, as in ds.isel(time=0)"

@@ -64,7 +64,8 @@ class Mesh:
     @property
     def is_earth(self) -> bool:
         """Whether the coordinates are longitude and latitude, and not those of a plane."""
-        unit, name = str(self.x.attrs.get("units", "")), str(self.x.name)
+        unit = str(self.x.attrs.get("units", ""))
+        name = str(self.x.name)
         if units.is_angle(unit):
             return True
         if units.measures(unit, units.LENGTHS):
@@ -82,7 +83,9 @@ class Mesh:
     def unit(self) -> str:
         """Unit of positions in a plane; empty where unknown."""
         unit = str(self.x.attrs.get("units", ""))
-        return units.symbol(unit) if units.measures(unit, units.LENGTHS) else ""
+        if units.measures(unit, units.LENGTHS):
+            return units.symbol(unit)
+        return ""
 
     @cached_property
     def _raw(self) -> tuple[Floats, Floats]:
@@ -90,7 +93,10 @@ class Mesh:
         for n, c in enumerate((self.x, self.y)):
             values = np.asarray(values_in(c), dtype=float)
             if c.ndim == 2 and self.corners is not None:  # both in one variable
-                values = values[n] if values.shape[0] == 2 else values[:, n]
+                if values.shape[0] == 2:
+                    values = values[n]
+                else:
+                    values = values[:, n]
             parts.append(values)
         return parts[0], parts[1]
 
@@ -104,7 +110,8 @@ class Mesh:
                 not unit and self.kind in ("MPAS", "ICON", "FESOM") and np.nanmax(np.abs(a)) < 6.5
             )
             if radians:
-                a, b = np.degrees(a), np.degrees(b)
+                a = np.degrees(a)
+                b = np.degrees(b)
         else:
             b = b * (units.factor(str(self.y.attrs.get("units", "")), self.unit) or 1.0)
         if self.kind == POINTS:
@@ -140,7 +147,9 @@ class Mesh:
         present = (self.faces >= 0)[..., None]
         with np.errstate(invalid="ignore"):
             p = (self.positions[self.faces] * present).sum(axis=1) / present.sum(axis=1)
-        return Projection(GLOBE).lonlat(p) if self.is_earth else (p[:, 0], p[:, 1])
+        if self.is_earth:
+            return Projection(GLOBE).lonlat(p)
+        return (p[:, 0], p[:, 1])
 
     @cached_property
     def triangles(self) -> tuple[Indices, Indices]:
@@ -148,13 +157,15 @@ class Mesh:
         faces = self.faces.copy()
         if faces.shape[1] > 3:
             # The shorter diagonal of a quadrilateral makes the better triangles.
-            p, four = self.positions, (faces >= 0).sum(axis=1) == 4
+            p = self.positions
+            four = (faces >= 0).sum(axis=1) == 4
             a, b, c, d = (p[faces[four, k]] for k in range(4))
             with np.errstate(invalid="ignore"):
                 turn = np.linalg.norm(d - b, axis=1) < np.linalg.norm(c - a, axis=1)
             turned = np.flatnonzero(four)[turn]
             faces[turned, :4] = np.roll(faces[turned, :4], -1, axis=1)
-        fans, numbers = [], []
+        fans = []
+        numbers = []
         for k in range(1, faces.shape[1] - 1):
             whole = (faces[:, [0, k, k + 1]] >= 0).all(axis=1)
             fans.append(faces[whole][:, [0, k, k + 1]])
@@ -193,7 +204,10 @@ class Mesh:
             return f"{len(self.a):,} points joined by {len(self.faces):,} triangles"
         kinds = {3: "triangles", 4: "quadrilaterals"}
         edges = np.unique((self.faces >= 0).sum(axis=1))
-        name = kinds.get(int(edges[0]), "polygons") if len(edges) == 1 else "polygons"
+        if len(edges) == 1:
+            name = kinds.get(int(edges[0]), "polygons")
+        else:
+            name = "polygons"
         return f"{self.kind}, {len(self.a):,} nodes, {len(self.faces):,} {name}"
 
 
@@ -205,7 +219,9 @@ def _positions(a: Floats, b: Floats, is_earth: bool) -> Floats:  # noqa: FBT001
 
 
 def _dim(array: xr.DataArray, ours: str) -> str:
-    return ours if ours in array.dims else str(max(array.dims, key=lambda d: array.sizes[d]))
+    if ours in array.dims:
+        return ours
+    return str(max(array.dims, key=lambda d: array.sizes[d]))
 
 
 def _numbers(mesh: Mesh, corners: xr.DataArray, count: int) -> Indices:
@@ -222,9 +238,12 @@ def _numbers(mesh: Mesh, corners: xr.DataArray, count: int) -> Indices:
     first = mesh.first
     if present.any():
         # The numbers themselves are more reliable than their attributes.
-        least, greatest = values[present].min(), values[present].max()
-        first = 1 if greatest == count and first == 0 else first
-        first = 0 if least == 0 and greatest < count and mesh.kind != "MPAS" else first
+        least = values[present].min()
+        greatest = values[present].max()
+        if greatest == count and first == 0:
+            first = 1
+        if least == 0 and greatest < count and mesh.kind != "MPAS":
+            first = 0
     values = values - first
     present &= (values >= 0) & (values < count)
     if not present.any():
@@ -285,8 +304,12 @@ def _joined(data: bytes, on_sphere: bool) -> Indices:  # noqa: FBT001
             f"there are {len(p)} points with a position; expected at least {FEWEST} points, "
             "between which triangles make a surface. Interpolate the values of stations to a grid"
         )
-    p = p / np.linalg.norm(p, axis=1, keepdims=True) if on_sphere else p
-    triangles = _on_sphere(p) if on_sphere else _in_plane(p[:, :2])
+    if on_sphere:
+        p = p / np.linalg.norm(p, axis=1, keepdims=True)
+    if on_sphere:
+        triangles = _on_sphere(p)
+    else:
+        triangles = _in_plane(p[:, :2])
     if len(triangles):
         edges = np.linalg.norm(p[triangles] - p[np.roll(triangles, 1, axis=1)], axis=-1)
         doubled = np.linalg.norm(triangle_normals(p, triangles), axis=1)

@@ -73,20 +73,24 @@ class TriangleMesh:
     @classmethod
     def _made(cls, surface: TriangleSurface) -> TriangleMesh:
         count = len(surface.triangles)
-        rates, metric = np.empty((count, 3, 2, 2)), np.empty((count, 3))
-        heights, size = np.empty((count, 3)), np.empty(count)
+        rates = np.empty((count, 3, 2, 2))
+        metric = np.empty((count, 3))
+        heights = np.empty((count, 3))
+        size = np.empty(count)
         for start in range(0, count, BLOCK_TRIANGLES):
             block = slice(start, start + BLOCK_TRIANGLES)
             _measure(surface, block, rates[block], metric[block], heights[block], size[block])
         across = _across(surface)
         shown = np.flatnonzero(surface.cells)
-        place, rank = surface.places, np.empty(surface.shape[1], dtype=np.intp)
+        place = surface.places
+        rank = np.empty(surface.shape[1], dtype=np.intp)
         # Nodes at one place follow each other.
         rank[np.argsort(place, kind="stable")] = np.arange(len(rank))
         nodes = rank[surface.triangles[shown].ravel()]
         order = np.argsort(nodes, kind="stable")
         ends = np.searchsorted(nodes[order], np.arange(len(rank) + 1))
-        first, last = ends[rank], ends[rank + 1]
+        first = ends[rank]
+        last = ends[rank + 1]
         place_last = last.copy()
         np.maximum.at(place_last, place, last)
         return cls(
@@ -119,11 +123,13 @@ def _measure(
     """Write the values of a block of triangles."""
     nodes = surface.triangles[block]
     p = surface.points[0][nodes]
-    one, two = p[:, 1] - p[:, 0], p[:, 2] - p[:, 0]
+    one = p[:, 1] - p[:, 0]
+    two = p[:, 2] - p[:, 0]
     sides = np.linalg.norm([p[:, 2] - p[:, 1], two, one], axis=-1)
     size[:] = sides.mean(axis=0)
     # In sizes of the triangle, so that no square is too large or too small.
-    e, f = one / size[:, None], two / size[:, None]
+    e = one / size[:, None]
+    f = two / size[:, None]
     normal = np.cross(e, f)
     area = np.linalg.norm(normal, axis=1, keepdims=True)
     heights[:] = (area[:, 0] / (sides / size)).T
@@ -149,7 +155,8 @@ def _dot(one: Floats, two: Floats) -> Floats:
 
 
 def _across(surface: TriangleSurface) -> Indices:
-    corners, beside = surface.joined, surface.neighbours
+    corners = surface.joined
+    beside = surface.neighbours
     result = np.full(beside.shape, -1, dtype=np.intp)
     for k in range(3):
         near = np.flatnonzero((beside[:, k] >= 0) & surface.cells)
@@ -202,7 +209,8 @@ class Derivatives(Columns):
     def put(self, at: Indices, values: Derivatives) -> None:
         """Write the derivatives of some particles (n,) in place."""
         for part in fields(self):
-            target, source = getattr(self, part.name), getattr(values, part.name)
+            target = getattr(self, part.name)
+            source = getattr(values, part.name)
             if target is not None and part.name != "bend":
                 target[..., at] = source
         if self.bend is not self.second:
@@ -236,7 +244,8 @@ class Motion(ABC):
     def at_corner(self, corner: int) -> Floats:
         """Return changes of the second and third share, by length, at a corner of each triangle."""
         count = len(self.mesh.corners)
-        shares, still = np.zeros((3, count)), np.zeros(count)
+        shares = np.zeros((3, count))
+        still = np.zeros(count)
         shares[corner] = 1
         now = self.at(np.arange(count), shares[1:], still, still + 1)
         return now.first * (now.size / now.pace)
@@ -247,7 +256,8 @@ class SteadyMotion(Motion):
 
     def __init__(self, field: FlowField, direction: float, *, by_length: bool) -> None:
         super().__init__(TriangleMesh.of(cast("TriangleSurface", field.surface)))
-        self.by_length, self.direction = by_length, direction
+        self.by_length = by_length
+        self.direction = direction
         flow = field.index_velocity
         self.floor = floor = speed_floor(flow.speed) if by_length else 0.0
         speed = np.where(flow.speed[0, 0] > floor, flow.speed[0, 0], 0.0)
@@ -266,11 +276,13 @@ class SteadyMotion(Motion):
         part = np.ascontiguousarray(self.table.take(triangle, axis=0, mode="clip").T)
         if self.direction < 0:
             np.negative(part[:6], out=part[:6])
-        one, two = part[2:4], part[4:6]
+        one = part[2:4]
+        two = part[4:6]
         first = part[:2] + one * shares[0] + two * shares[1]
         second = one * first[0] + two * first[1]
         third = one * second[0] + two * second[1]
-        size, pace = part[9], part[10]
+        size = part[9]
+        pace = part[10]
         self._lead_along(triangle, part[6:9], first, second, third)
         if self.by_length:
             rest = RESTING_CELLS * (part[11] + part[12] * shares[0] + part[13] * shares[1])
@@ -292,7 +304,9 @@ class SteadyMotion(Motion):
         slow = (second[:, at] - near * first[:, at]) / (along - near)
         off = first[:, at] - slow
         on = dot(metric[:, at], off, off) < (OFF_LINE * near) ** 2
-        at, slow, along = at[on], slow[:, on], along[on]
+        at = at[on]
+        slow = slow[:, on]
+        along = along[on]
         first[:, at], second[:, at], third[:, at] = slow, along * slow, along**2 * slow
 
 
@@ -310,7 +324,8 @@ def _table(mesh: TriangleMesh, components: Floats, speed: Floats) -> Floats:
     result = np.empty((len(mesh.corners), COLUMNS))
     for start in range(0, len(result), BLOCK_TRIANGLES):
         block = slice(start, start + BLOCK_TRIANGLES)
-        corners, part = mesh.corners[block], result[block]
+        corners = mesh.corners[block]
+        part = result[block]
         speeds = speed[corners]
         most = speeds.max(axis=1)
         pace = mesh.size[block] / np.where(most > 0, most, 1.0)
@@ -336,12 +351,19 @@ class ChangingMotion(Motion):
         self, mesh: TriangleMesh, components: Floats, times: Floats, destination: float, side: float
     ) -> None:
         super().__init__(mesh)
-        self.components, self.direction = components, side
+        self.components = components
+        self.direction = side
         lags = side * (times - destination)
         #: Lags of the time steps, increasing, and the first node of each.
-        self.levels = lags if side > 0 else lags[::-1].copy()
+        if side > 0:
+            self.levels = lags
+        else:
+            self.levels = lags[::-1].copy()
         first = np.arange(len(times)) * (len(components) // len(times))
-        self.steps = first if side > 0 else first[::-1].copy()
+        if side > 0:
+            self.steps = first
+        else:
+            self.steps = first[::-1].copy()
 
     def at(self, triangle: Indices, shares: Floats, lag: Floats, last: Floats) -> Derivatives:
         """Return derivatives, see :meth:`Motion.at`."""
@@ -353,9 +375,11 @@ class ChangingMotion(Motion):
         second = bend + later[0] + later[1] * shares[0] + later[2] * shares[1]
         third = law[1] * second[0] + law[2] * second[1]
         third += 2 * (later[1] * first[0] + later[2] * first[1])
-        metric, size = self.mesh.metric.take(triangle, axis=0).T, self.mesh.size.take(triangle)
+        metric = self.mesh.metric.take(triangle, axis=0).T
+        size = self.mesh.size.take(triangle)
         # In a time-varying flow no particle stays at rest.
-        pace, rest = np.ones(len(lag)), np.full(len(lag), -1.0)
+        pace = np.ones(len(lag))
+        rest = np.full(len(lag), -1.0)
         return Derivatives(
             first, second, third, bend, metric, size, pace, rest, np.minimum(until, last)
         )
@@ -363,8 +387,10 @@ class ChangingMotion(Motion):
     def _corners(self, nodes: Indices, lag: Floats) -> tuple[Floats, Floats, Floats]:
         """Return velocity of nodes (N, 3), its change by lag, (3, 2, N), and until when, (N,)."""
         after = np.searchsorted(self.levels, lag, side="right")
-        early, late = np.maximum(after - 1, 0), np.minimum(after, len(self.levels) - 1)
-        begin, end = self.levels[early], self.levels[late]
+        early = np.maximum(after - 1, 0)
+        late = np.minimum(after, len(self.levels) - 1)
+        begin = self.levels[early]
+        end = self.levels[late]
         span = np.where(end > begin, end - begin, 1.0)
         before, following = (
             self.components.take(nodes + self.steps[at][:, None], axis=0).transpose(1, 2, 0)

@@ -90,7 +90,8 @@ def integrate(
     at rest; by default that is the last of ``lags``. Paths are ended after ``most_steps``, which by
     default grow with the number of nodes. Some have ``ended`` at once, (N,).
     """
-    last = lags[-1] if last is None else last
+    if last is None:
+        last = lags[-1]
     run = _Run(motion, points, triangle, shares, lags, last, tolerance)
     # Values too large or too small to represent end a path.
     with np.errstate(all="ignore"):
@@ -127,7 +128,8 @@ def begin(motion: Motion, nodes: Indices) -> tuple[Indices, Bools]:
             sizes[:, corner] = np.nan_to_num(np.abs(inward).sum(axis=0))
     least = EDGE_ROUNDING * sizes
     result = _most_inward(mesh, inwards, mesh.first[nodes], mesh.last[nodes])
-    first, last = mesh.place_first[nodes], mesh.place_last[nodes]
+    first = mesh.place_first[nodes]
+    last = mesh.place_last[nodes]
     leaves = inwards.take(result) < -least.take(result)
     out = np.flatnonzero(leaves & (last - first > mesh.last[nodes] - mesh.first[nodes]))
     ended = np.zeros(len(nodes), dtype=bool)
@@ -192,7 +194,9 @@ class _Run:
         last: Floats,
         tolerance: float,
     ) -> None:
-        self.motion, self.mesh, self.points = motion, motion.mesh, points
+        self.motion = motion
+        self.mesh = motion.mesh
+        self.points = points
         #: Six times the error allowed, squared, as it is compared with third derivatives.
         self.error = (6 * tolerance) ** 2
         count = len(triangle)
@@ -240,7 +244,8 @@ class _Run:
         if now.until is not None:
             state.standing[lag == now.until] = 0
         ended |= state.standing > MOST_STANDING
-        state.lag, state.shares = lag, shares
+        state.lag = lag
+        state.shares = shares
         crossing = np.flatnonzero((edge >= 0) & ~ended)
         ended[self._cross(now, h, crossing, edge)] = True
         if ended.any():
@@ -327,15 +332,18 @@ class _Run:
 
     def _behind(self, at: Indices, edge: Indices, code: Indices) -> tuple[Indices, Indices, Floats]:
         """Return triangles (n,) behind the edges of particles, their edges, and shares (2, n)."""
-        shares, count = all_shares(self.state.shares[:, at]), np.arange(len(at))
+        shares = all_shares(self.state.shares[:, at])
+        count = np.arange(len(at))
         one, two = (np.maximum(shares[(edge + step) % 3, count], 0.0) for step in (1, 2))
-        share, layout = one / (one + two), code & 7
+        share = one / (one + two)
+        layout = code & 7
         beyond = NEXT[:, layout] * share + AFTER[:, layout] * (1 - share)
         return code >> 3, BEHIND[layout], beyond
 
     def _cross(self, now: Derivatives, h: Floats, at: Indices, edge: Indices) -> Indices:
         """Move particles over their edges, and return those at a border that they leave."""
-        state, edge = self.state, edge[at]
+        state = self.state
+        edge = edge[at]
         side = 3 * state.triangle[at] + edge
         code = self.mesh.across[side]
         slip = self.mesh.slip[side]
@@ -385,7 +393,8 @@ class _Run:
         speeds = None
         while len(due):
             step = h[due]
-            first, second = now.first[:, due], now.second[:, due]
+            first = now.first[:, due]
+            second = now.second[:, due]
             if self.motion.by_length:
                 if speeds is None:
                     speeds = _speeds(now, h)
@@ -393,7 +402,8 @@ class _Run:
                 t = step * _fraction(length / step, *(speed[due] for speed in speeds))
             else:
                 t = np.minimum((state.due[due] - state.lag[due]) / now.pace[due], step)
-            number, which = state.next[due], state.which[due]
+            number = state.next[due]
+            which = state.which[due]
             self.triangle[number, which] = state.triangle[due]
             self.shares[number, :, which] = (
                 state.shares[:, due] + t * (first + (0.5 * t) * second)
@@ -405,7 +415,8 @@ class _Run:
     def _end(self, at: Indices, now: Derivatives) -> None:
         """End some paths at their positions, and continue them straight for the other lags."""
         state = self.state
-        which, rate = state.which[at], now.first[:, at]
+        which = state.which[at]
+        rate = now.first[:, at]
         if self.motion.by_length:
             rate = rate / (now.size[at] * np.sqrt(dot(now.metric[:, at], rate, rate)))
         else:
@@ -455,13 +466,15 @@ def _speeds(now: Derivatives, h: Floats) -> tuple[Floats, Floats, Floats]:
     square = dot(now.metric, now.first, now.first)
     slope = dot(now.metric, now.first, now.second) * h
     bend = dot(now.metric, now.second, now.second) * (h * h)
-    middle, end = square + slope + 0.25 * bend, square + 2 * slope + bend
+    middle = square + slope + 0.25 * bend
+    end = square + 2 * slope + bend
     return np.sqrt(square), np.sqrt(np.maximum(middle, 0.0)), np.sqrt(np.maximum(end, 0.0))
 
 
 def _fraction(mean: Floats, begin: Floats, middle: Floats, end: Floats) -> Floats:
     """Return the fraction of a step, 0 to 1, where its length is ``mean`` times its time."""
-    one, two = 4 * middle - 3 * begin - end, 2 * (begin + end) - 4 * middle
+    one = 4 * middle - 3 * begin - end
+    two = 2 * (begin + end) - 4 * middle
     fraction = 6 * mean / _sum_of_speeds(begin, middle, end)
     for _ in range(NEWTON_ROUNDS):
         length = fraction * (begin + fraction * (one / 2 + fraction * (two / 3)))
@@ -487,7 +500,8 @@ def _inward(now: Derivatives, at: Indices, edge: Indices) -> Bools:
 def _along(change: Floats, metric: Floats, edge: Indices) -> Floats:
     """Return the part of changes (2, N) of shares along the edges opposite to corners (N,)."""
     e, f, g = metric
-    first, second = edge == 1, edge == 2
+    first = edge == 1
+    second = edge == 2
     one = np.where(first, g, np.where(second, -f, f - g))
     two = np.where(first, -f, np.where(second, e, f - e))
     wide = np.where(first, g, np.where(second, e, e + g - 2 * f))

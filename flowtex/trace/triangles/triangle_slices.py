@@ -82,7 +82,8 @@ def triangle_slices(
 
     def work(job: tuple[int, int, slice]) -> None:
         side, step, block = job
-        motion, nodes = motions[side][step], at[block]
+        motion = motions[side][step]
+        nodes = at[block]
         corners, ended = starts[side][step]
         triangle, corner = np.divmod(corners[block], 3)
         shares = np.stack([corner == 1, corner == 2]).astype(float)
@@ -128,12 +129,17 @@ def _direct_lags(field: FlowField, parameter: str, lags: Floats, unit: Floats) -
         return len(lags)
     speed = field.index_velocity.speed[0][field.valid]
     moving = speed[speed > 0]
-    pace = float(np.median(moving)) if parameter == "time" and len(moving) else 1.0
+    if parameter == "time" and len(moving):
+        pace = float(np.median(moving))
+    else:
+        pace = 1.0
     cells = lags * (pace * float(unit.flat[0]) / small_cell(field))
     direct = max(int(np.searchsorted(cells, DIRECT_CELLS, side="right")), LEAST_DIRECT)
     # Each has to be twice the one before.
     doubled = np.allclose(lags[1:], 2 * lags[:-1], rtol=ROUNDING, atol=0)
-    return direct if direct < len(lags) and doubled else len(lags)
+    if direct < len(lags) and doubled:
+        return direct
+    return len(lags)
 
 
 def triangle_paths(
@@ -147,7 +153,8 @@ def triangle_paths(
     tolerance: float,
 ) -> Paths:
     """Return what :func:`flowtex.trace.paths` does; a path that has ended stays at its end."""
-    surface, mesh = cast("TriangleSurface", field.surface), _mesh(field)
+    surface = cast("TriangleSurface", field.surface)
+    mesh = _mesh(field)
     motion = _motions(field, [step], parameter, direction)[0]
     triangle = np.clip(np.floor(start[:, 1]).astype(np.intp), 0, len(mesh.corners) - 1)
     second = np.clip(start[:, 1] - triangle, 0.0, 1.0)
@@ -157,7 +164,8 @@ def triangle_paths(
     paths = integrate(
         motion, field.points[0], triangle[usable], shares[:, usable], due, tolerance=tolerance
     )
-    positions, reach = np.repeat(start[None], len(lags), axis=0), np.zeros(len(start))
+    positions = np.repeat(start[None], len(lags), axis=0)
+    reach = np.zeros(len(start))
     two = np.moveaxis(paths.shares, 1, -1)
     weights = np.concatenate([1 - two.sum(axis=-1, keepdims=True), two], axis=-1)
     positions[:, usable] = surface.index_of(paths.triangle, weights)
@@ -177,7 +185,8 @@ def _motions(
     if field.steady:
         return [SteadyMotion(field, direction, by_length=parameter == "arclength")] * len(steps)
     components = np.ascontiguousarray(field.index_velocity.components).reshape(-1, 2)
-    mesh, times = _mesh(field), field.times
+    mesh = _mesh(field)
+    times = field.times
     return [ChangingMotion(mesh, components, times, float(times[n]), direction) for n in steps]
 
 
@@ -210,13 +219,18 @@ class Composition:
     def __init__(
         self, motion: SteadyMotion, points: Floats, lags: Floats, direct: int, moved: Floats32
     ) -> None:
-        self.motion, self.mesh, self.points = motion, motion.mesh, points
-        self.lags, self.direct, self.moved = lags, direct, moved
+        self.motion = motion
+        self.mesh = motion.mesh
+        self.points = points
+        self.lags = lags
+        self.direct = direct
+        self.moved = moved
         count = len(points)
         #: Lag at which each path ends, (N,); 0 for nodes that are not followed.
         self.reach = np.zeros(count)
         #: Triangles by lag, (M, N), and the shares of their second and third corner at the last.
-        self._triangle, self._shares = np.zeros((len(lags), count), np.int32), np.zeros((2, count))
+        self._triangle = np.zeros((len(lags), count), np.int32)
+        self._shares = np.zeros((2, count))
         self._ahead = np.zeros((3, count))
         #: Nodes at the corners, (3, T).
         self._corners = np.ascontiguousarray(self.mesh.corners.T)
@@ -234,7 +248,8 @@ class Composition:
 
     def complete(self, nodes: Indices, run: Map) -> None:
         """Fill the long slices at the nodes (n,) that are followed."""
-        search, self._bends = _Search(self.mesh, self.points), _Bends(self.mesh, self.points)
+        search = _Search(self.mesh, self.points)
+        self._bends = _Bends(self.mesh, self.points)
         with np.errstate(all="ignore"):
             for m in range(self.direct, len(self.lags)):
                 check()
@@ -252,7 +267,8 @@ class Composition:
     def _judge(self, j: int, normals: Floats) -> None:
         """Find the triangles in which slice j continues paths."""
         reach = self.reach[self._corners]
-        first, last = reach.min(axis=0), reach.max(axis=0)
+        first = reach.min(axis=0)
+        last = reach.max(axis=0)
         apart = (last > self.lags[j]) | (last - first > ENDS_SHARE * self.lags[j])
         good = (first > self.lags[j]) | ~apart
         if j < self.direct:
@@ -260,7 +276,9 @@ class Composition:
             return
         # Lags by time are converted into lengths by the fastest corner.
         table = self.motion.table
-        stretch = 1.0 if self.motion.by_length else table[:, 9] / table[:, 10]
+        stretch: Floats | float = 1.0
+        if not self.motion.by_length:
+            stretch = table[:, 9] / table[:, 10]
         bend = self._bends.of(self.points + self.moved[j], self._triangle[j], normals)
         good &= bend <= 8 * (ERROR_SHARE * self.lags[j] * stretch + ERROR_CELLS * self.mesh.size)
         self._longest[good & (self._longest == j - 1)] = j
@@ -269,8 +287,10 @@ class Composition:
     @np.errstate(all="ignore")
     def _follow(self, m: int, search: _Search, nodes: Indices) -> None:
         """Continue the paths of some nodes, piece by piece, to lag m from the one before."""
-        triangle, shares = self._triangle[m - 1, nodes], self._shares[:, nodes]
-        lag, pieces = np.full(len(nodes), self.lags[m - 1]), 0
+        triangle = self._triangle[m - 1, nodes]
+        shares = self._shares[:, nodes]
+        lag = np.full(len(nodes), self.lags[m - 1])
+        pieces = 0
         most = np.full(len(nodes), m)
         while len(nodes):
             left = (self.lags[m] - lag) * (1 + ROUNDING)
@@ -294,7 +314,10 @@ class Composition:
             self.reach[nodes[ended]] = (lag + np.minimum(ends, span))[ended]
             lag += np.where(again, 0.0, span)
             on = ~ended & (lag < self.lags[m] * (1 - ROUNDING))
-            nodes, triangle, shares, lag = nodes[on], triangle[on], shares[:, on], lag[on]
+            nodes = nodes[on]
+            triangle = triangle[on]
+            shares = shares[:, on]
+            lag = lag[on]
             most = most[on]
 
     def _piece(
@@ -306,8 +329,10 @@ class Composition:
         surface, and the lags from here (n,) at which paths end: infinite where no corner's path
         does, and more than that of the slice where only some do.
         """
-        corners, weights = self._corners.take(triangle, axis=1), all_shares(shares)
-        reach, span = self.reach[corners], self.lags[number]
+        corners = self._corners.take(triangle, axis=1)
+        weights = all_shares(shares)
+        reach = self.reach[corners]
+        span = self.lags[number]
         ended = reach <= span
         target = _blend(weights, self.points, corners)
         for weight, nodal in zip(weights, corners, strict=True):
@@ -335,7 +360,8 @@ class _Search:
     def __init__(self, mesh: TriangleMesh, points: Floats) -> None:
         self._across = mesh.across
         first, second, third = points[mesh.corners].transpose(1, 0, 2)
-        e, f = second - first, third - first
+        e = second - first
+        f = third - first
         with np.errstate(all="ignore"):
             ee, ef, ff = (
                 np.einsum("mc,mc->m", *pair)[:, None] for pair in ((e, e), (e, f), (f, f))
@@ -353,8 +379,11 @@ class _Search:
 
         The search begins at some triangles (n,).
         """
-        result, outside = triangle.copy(), np.zeros(len(triangle), dtype=bool)
-        shares, which, before = np.empty((3, len(triangle))), np.arange(len(triangle)), triangle
+        result = triangle.copy()
+        outside = np.zeros(len(triangle), dtype=bool)
+        shares = np.empty((3, len(triangle)))
+        which = np.arange(len(triangle))
+        before = triangle
         # Triangles in which the search was at a power of two of rounds.
         mark = triangle
         for crossed in range(MOST_CROSSED):
@@ -374,7 +403,9 @@ class _Search:
             out = out[on]
             before = triangle[out]
             mark = mark[out]
-            which, triangle, place = which[out], code[on] >> 3, place[:, out]
+            which = which[out]
+            triangle = code[on] >> 3
+            place = place[:, out]
             if not len(which):
                 break
         np.fmin(np.fmax(shares, 0.0, out=shares), 1.0, out=shares)
@@ -388,11 +419,13 @@ class _Bends:
     def __init__(self, mesh: TriangleMesh, points: Floats) -> None:
         near = np.flatnonzero(mesh.across >= 0)
         near = near[near // 3 < mesh.across[near] >> 3]
-        code, (triangle, k) = mesh.across[near], np.divmod(near, 3)
+        code = mesh.across[near]
+        (triangle, k) = np.divmod(near, 3)
         far = 3 * (code >> 3) + BEHIND[code & 7]
         flat = mesh.corners.ravel()
         #: Edges by the corners opposite to them, in the triangles on both sides.
-        self._sides, self._count = (near, far), len(mesh.corners)
+        self._sides = (near, far)
+        self._count = len(mesh.corners)
         #: Nodes there, (2, E), and at the ends of the edges, (2, E).
         self._tips = flat[np.stack(self._sides)]
         self._ends = mesh.corners[triangle, (k + np.array([[1], [2]])) % 3]
@@ -414,8 +447,10 @@ class _Bends:
         Components normal to the triangles (N,) of the positions are left out: they are due to the
         bend of the surface.
         """
-        near, second = self._near[:, None], self._second[:, None]
-        (tip, far), (begin, end) = place[self._tips], place[self._ends]
+        near = self._near[:, None]
+        second = self._second[:, None]
+        (tip, far) = place[self._tips]
+        (begin, end) = place[self._ends]
         bend = far - begin - near * (tip - begin) - second * (end - begin)
         normal = normals[triangle[self._tips[1]]]
         bend -= np.einsum("ec,ec->e", bend, normal)[:, None] * normal
