@@ -37,7 +37,7 @@ TUBES = {
 def side_of(mesh: Any, distance: float) -> Floats:
     """Return the brightness of the middle of the side and of its upstream end."""
     view = [(-1.3, -0.5 - distance, 0), (-1.3, 0, 0), (0, 0, 1)]
-    options: Any = {"size": SIZE, "camera": view, "scalars": False, "lighting": False}
+    options: Any = {"size": SIZE, "grain": 1.5, "camera": view, "scalars": False, "lighting": False}
     picture = flowtex.render(mesh, **options)[..., :3].mean(axis=-1)
     pixel = np.tan(np.radians(15)) * distance / (SIZE[1] / 2)
     middle_x, middle_y = SIZE[0] // 2, SIZE[1] // 2
@@ -91,7 +91,13 @@ def discs_of(mesh: Any) -> Any:
 def disc_in(mesh: Any, distance: float, ellipse: float) -> Floats:
     """Return the brightness of the outer part of the disc at x = -1.5."""
     view = [(-1.5 - distance, 0, 0), (-1.5, 0, 0), (0, 0, 1)]
-    options: Any = {"size": (160, 160), "camera": view, "scalars": False, "lighting": False}
+    options: Any = {
+        "size": (160, 160),
+        "grain": 1.5,
+        "camera": view,
+        "scalars": False,
+        "lighting": False,
+    }
     picture = flowtex.render(mesh, **options)[..., :3].mean(axis=-1)
     place = (np.arange(160) - 79.5) * np.tan(np.radians(15)) * distance / 80
     radius = np.hypot(place[:, None], place / ellipse)

@@ -29,7 +29,7 @@ def still(make: Callable[[], FlowField], zoom: float) -> Picture:
 
 
 def picture(field: FlowField, zoom: float, clock: float = 0.0, **settings: Any) -> Picture:
-    scene = Scene(field, Settings(texture="streaklets", **settings))
+    scene = Scene(field, Settings(texture="streaklets", grain=1.5, **settings))
     x, y, _ = field.surface.center + 0.11 * field.surface.extent
     camera = Camera((x, y, 5), (x, y, 0), (0, 1, 0), parallel=True, parallel_scale=0.6 / zoom)
     view = ViewState(clock=clock)

@@ -69,7 +69,9 @@ def test_tiles_draw_what_the_whole_draws(make: Any, monkeypatch: pytest.MonkeyPa
     for root in (10**9, 3000):
         monkeypatch.setattr("flowtex.textures.tiles.pyramid.ROOT_NODES", root)
         _pyramids._values.clear()
-        pictures.append([flowtex.render(field, size=SIZE, **how) for how, _ in CASES[make]])
+        pictures.append(
+            [flowtex.render(field, size=SIZE, grain=1.5, **how) for how, _ in CASES[make]]
+        )
     for whole, tiles, (_, most) in zip(*pictures, CASES[make], strict=True):
         off = np.abs(whole.astype(float) - tiles).max(axis=-1)
         assert np.ptp(whole) > 100
