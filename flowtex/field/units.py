@@ -8,14 +8,27 @@ from typing import Any
 
 from flowtex.errors import FieldError, import_extra
 
-NONE = ("", "1", "-", "none", "unknown", "n/a", "dimensionless")  #: Texts of data without a unit.
+#: Texts of data without a unit, also numbers of levels.
+NONE = ("", "1", "-", "none", "unknown", "n/a", "dimensionless", "level", "levels", "layer")
 LENGTHS = ("[length]", "[printing_unit]")  #: Dimensions of lengths in pint; images have pixels.
 TIMES = ("[time]", "[frame]")  #: Dimensions of times in pint; images have frames.
 PRESSURES = ("[mass] / [length] / [time] ** 2",)  #: Dimensions of pressures in pint.
 #: Dimensions of velocities in pint.
 VELOCITIES = tuple(f"{length} / {time}" for length in LENGTHS for time in TIMES)
-#: Spellings that pint reads otherwise: its px is a length of web pages.
-SPELLINGS = ((re.compile(r"\bpx\b"), "pixel"), (re.compile(r"[{}]"), ""))
+#: Spellings that pint reads otherwise, or not at all: its px is a length of web pages, its mb a
+#: unit of area, and its ms a millisecond.
+SPELLINGS = (
+    (re.compile(r"[\u2010-\u2015\u2212]"), "-"),
+    (re.compile(r"[{}\[\]]"), ""),
+    (re.compile(r"(?<=[A-Za-z])\s+(?=-\d)"), ""),
+    (re.compile(r"\bpx\b"), "pixel"),
+    (re.compile(r"\bmb\b", re.IGNORECASE), "millibar"),
+    (re.compile(r"\bhpa\b", re.IGNORECASE), "hPa"),
+    (re.compile(r"\bkts?\b", re.IGNORECASE), "knot"),
+    (re.compile(r"^([ckm]?m)s\s*(?:\*\*|\^)?\s*-1$", re.IGNORECASE), r"\1/s"),
+    (re.compile(r"^k(m/?h|mph)(-1)?$", re.IGNORECASE), "km/h"),
+    (re.compile(r"^m\s*/\s*s(ec)?$", re.IGNORECASE), "m/s"),
+)
 
 
 @cache
@@ -37,6 +50,13 @@ def parsed(text: str) -> Any:
         return None
     for pattern, replacement in SPELLINGS:
         text = pattern.sub(replacement, text)
+    unit = _known(text)
+    if unit is None:  # such as Meters
+        return _known(text.lower())
+    return unit
+
+
+def _known(text: str) -> Any:
     try:
         return registry().parse_units(text)
     except ModuleNotFoundError:

@@ -16,6 +16,7 @@ from flowtex.field import units
 from flowtex.field.dates import as_seconds, span_since
 from flowtex.field.options import FieldOptions
 from flowtex.sources.datasets import labels
+from flowtex.sources.datasets.levels import pressure_unit, surface_level
 from flowtex.sources.notices import Record
 
 if TYPE_CHECKING:
@@ -31,10 +32,6 @@ LEVELS = re.compile(
 TIMES = re.compile(r"^(t|n?times?|time_?\w*|\w+_time|dates?|frames?)$", re.IGNORECASE)
 ROWS = re.compile(r"^(y\w*|j\w*|lat\w*|nlat|eta\w*|south_north\w*|rlat)$", re.IGNORECASE)
 COLUMNS = re.compile(r"^(x\w*|i\w*|lon\w*|nlon|xi\w*|west_east\w*|rlon)$", re.IGNORECASE)
-#: Names of levels that are pressures.
-PRESSURE_NAMES = re.compile(r"^(p|plev\w*|pressure\w*|isobaric\w*)$", re.IGNORECASE)
-#: Names of levels that a model numbers from its top on.
-FROM_THE_TOP = re.compile(r"generalized.height", re.IGNORECASE)
 #: Name of the dimension of nodes, where there is a mesh.
 NODES = "mesh_nodes"
 #: Name of the dimension of faces, where there is a mesh.
@@ -45,10 +42,6 @@ SECTION = ("y_of_section", "x_of_section")
 LEVEL = "level"
 #: Word for a choice of a time.
 TIME = "time"
-#: Levels of pressure that models of weather use, in hPa.
-USUAL_HPA = (1000, 950, 925, 900, 850, 800, 700, 600, 500, 400, 300, 250, 200, 150, 100, 50)
-#: Greatest pressure in hPa, beyond which numbers without a unit are pascals.
-MOST_HPA = 2000.0
 
 
 @dataclass
@@ -114,10 +107,7 @@ class Drawn:
         known = {axis.kind: axis for axis in self.axes}
         surface = horizontal_dims(array)
         series: tuple[str, ...] = ()
-        for dim in map(str, array.dims):
-            if dim in surface:
-                continue
-            kind = axis_kind(array, dim)
+        for kind, dim in further_axes(array).items():
             axis = known.get(kind)
             if axis is None:
                 if array.sizes[dim] > 1:
@@ -383,10 +373,8 @@ def _drawn(
     if count == 1:
         return 0
     if kind == LEVEL and line is not None and line.dtype.kind in "fiu":
-        coordinate, reason = coordinate_of(array, dim), "the nearest to the surface"
-        name = "" if coordinate is None else str(coordinate.attrs.get("long_name", ""))
-        falls = is_pressure(coordinate) or FROM_THE_TOP.search(name)
-        number = int(np.nanargmin(-line.astype(float) if falls else np.abs(line.astype(float))))
+        number = surface_level(coordinate_of(array, dim), line, array)
+        reason = "the nearest to the surface"
     else:
         number, reason = 0, "the first"
     other = 0 if number else count - 1
@@ -398,29 +386,6 @@ def _drawn(
     text = f"{dim} is {description}, {reason} of {count} values; choose another, as in {example}"
     record("select", text, notable=True)
     return number
-
-
-def is_pressure(coordinate: xr.DataArray | None) -> bool:
-    """Return whether levels are pressures, by their unit, their name or their values."""
-    if coordinate is None:
-        return False
-    unit = str(coordinate.attrs.get("units", ""))
-    if units.parsed(unit) is not None:
-        return units.measures(unit, units.PRESSURES)
-    return _pressure_unit(coordinate) != ""
-
-
-def _pressure_unit(coordinate: xr.DataArray) -> str:
-    """Return the unit of pressures without one, by their values; empty for other levels."""
-    values = np.atleast_1d(coordinate.values)
-    if values.dtype.kind not in "fiu":
-        return ""
-    named = PRESSURE_NAMES.match(str(coordinate.name))
-    declared = coordinate.attrs.get("standard_name") == "air_pressure"
-    unit = "hPa" if np.nanmax(np.abs(values), initial=0.0) <= MOST_HPA else "Pa"
-    usual = np.isin(values / (1.0 if unit == "hPa" else 100.0), USUAL_HPA)
-    by_values = values.size > 1 and usual.mean() > 0.5 and values.max() >= 100
-    return unit if named or declared or by_values else ""
 
 
 def _nearest(target: Any, line: AnyArray, name: str, *, is_longitude: bool) -> int:
@@ -479,6 +444,15 @@ def _unit(array: xr.DataArray, dim: str) -> str:
 def _value_text(value: Any, array: xr.DataArray, dim: str) -> str:
     unit = _unit(array, dim)
     if not unit and dim in array.coords and axis_kind(array, dim) == LEVEL:
-        unit = _pressure_unit(array.coords[dim])
-    number = f"{value:.5g}" if isinstance(value, (int, float, np.number)) else str(value)
-    return f"{number} {unit}".strip()
+        unit = pressure_unit(array.coords[dim])
+    unit = "" if unit.lower() in units.NONE else unit
+    return f"{value_word(value)} {unit}".strip()
+
+
+def value_word(value: Any) -> str:
+    """Return a label as text: numbers with five digits, and spans in hours."""
+    if isinstance(value, np.timedelta64):
+        return f"{value / np.timedelta64(1, 'h'):g} h"
+    if isinstance(value, (int, float, np.number)):
+        return f"{value:.5g}"
+    return str(value)

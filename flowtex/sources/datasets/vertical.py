@@ -24,6 +24,7 @@ from flowtex.field.steps import LazySteps
 from flowtex.sources.datasets import axes, labels
 from flowtex.sources.datasets.align import align, common
 from flowtex.sources.datasets.coordinates import LATITUDE, LONGITUDE
+from flowtex.sources.datasets.levels import is_pressure
 from flowtex.sources.datasets.select import two_names, variable, velocity_unit
 from flowtex.sources.datasets.values import Component, checked_component, numbers_in, read_step
 from flowtex.sources.notices import Record
@@ -235,6 +236,4 @@ def _is_downward(up: xr.DataArray) -> bool:
     positive = str(up.attrs.get("positive", "")).lower()
     if positive in ("up", "down"):
         return positive == "down"
-    return axes.is_pressure(up) or (
-        str(up.name).lower().startswith("depth") and float(up.max()) > 0
-    )
+    return is_pressure(up) or (str(up.name).lower().startswith("depth") and float(up.max()) > 0)
