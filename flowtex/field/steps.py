@@ -13,6 +13,7 @@ from flowtex._util.cache import ByteCache
 
 KEPT_BYTES = 256_000_000  #: Bytes of steps that stay in memory.
 MOST_KEPT = 8  #: Most steps that stay in memory.
+MOST_EXAMINED = 4_000_000  #: Most values of a series that are examined before it is drawn.
 
 
 class LazySteps:
@@ -22,18 +23,26 @@ class LazySteps:
     a list of numbers another array of steps, read later. ``np.asarray`` reads all. ``read`` returns
     a step, (J, I, ...), by its number from 0, and may be called by several threads; ``kept`` bytes
     of steps stay in memory once they have been read, and as many of those that are made from them.
+    Other steps than the first one are examined if that is ``quick``.
     A pickle has ``read``, and not the steps; a deep copy is the array itself, which never changes.
     """
 
     def __init__(
-        self, count: int, read: Callable[[int], Floats], *, kept: int = KEPT_BYTES
+        self,
+        count: int,
+        read: Callable[[int], Floats],
+        *,
+        kept: int = KEPT_BYTES,
+        quick: bool = False,
     ) -> None:
         self._count, self._read, self._most = count, read, kept
+        self.quick = quick
         self._kept: ByteCache[int, Floats] = ByteCache(kept, max_count=MOST_KEPT)
         self._shape: tuple[int, ...] | None = None
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return partial(LazySteps, kept=self._most), (self._count, self._read)
+        options = {"kept": self._most, "quick": self.quick}
+        return partial(LazySteps, **options), (self._count, self._read)
 
     def __deepcopy__(self, memo: Any) -> LazySteps:
         return self
@@ -70,7 +79,8 @@ class LazySteps:
 
     def map(self, function: Callable[[Floats], Floats]) -> LazySteps:
         """Return steps that a function makes from these when they are read."""
-        return LazySteps(self._count, partial(self._mapped, function), kept=self._most)
+        read = partial(self._mapped, function)
+        return LazySteps(self._count, read, kept=self._most, quick=self.quick)
 
     def _mapped(self, function: Callable[[Floats], Floats], number: int) -> Floats:
         return function(self.step(number))
@@ -88,7 +98,8 @@ class LazySteps:
             return np.asarray(self)[key]
         if isinstance(first, slice) and not rest and len(numbers) == self._count:
             return self
-        return LazySteps(len(numbers), partial(self._picked, numbers, rest), kept=self._most)
+        read = partial(self._picked, numbers, rest)
+        return LazySteps(len(numbers), read, kept=self._most, quick=self.quick)
 
     def __array__(self, dtype: Any = None, copy: Any = None) -> AnyArray:
         """Read all steps."""
@@ -120,6 +131,17 @@ def first_step(values: Any) -> Any:
 def typical_steps(count: int) -> list[int]:
     """Return steps that represent all of this many: the first, the middle and the last one."""
     return sorted({0, (count - 1) // 2, count - 1})
+
+
+def examined_steps(count: int, size: int) -> list[int]:
+    """Return steps with this many values each to examine: all of a small series, or at least three.
+
+    The others are evenly spaced.
+    """
+    most = max(MOST_EXAMINED // max(size, 1), 3)
+    if count <= most:
+        return list(range(count))
+    return [round(n) for n in np.linspace(0, count - 1, most).tolist()]
 
 
 def moves(steps: Steps) -> bool:

@@ -104,16 +104,19 @@ def velocity_units(length: str, time: str, velocity: str) -> tuple[float, str, s
     """Return the factor from a unit of velocity to length per time, the unit of time, and a symbol.
 
     An unknown unit of time is the velocity's own one. Velocities without a unit, or along positions
-    without one, are not converted.
+    without one, are not converted, nor are other vectors such as stress.
     """
     if not velocity or velocity == speed_unit(length, time):
         return 1.0, time, velocity
+    given = time
     if length and not time:
         unit = parsed(velocity)
         parts = [] if unit is None else [name for name, _ in (1 * unit).unit_items()]
         time = next((symbol(name) for name in parts if measures(name, TIMES)), "s")
     own = speed_unit(length, time)
     scale = factor(velocity, own) if own else 1.0
+    if scale is None and not measures(velocity, VELOCITIES) and parsed(velocity) is not None:
+        return 1.0, given, symbol(velocity)
     if scale is None:
         raise FieldError(
             f"velocity_unit is {velocity!r}, which cannot be converted to {own!r}, the unit of "

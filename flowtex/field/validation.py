@@ -17,7 +17,7 @@ from flowtex._util.array_types import Bools, Floats
 from flowtex._util.host_arrays import host_array, unit_text
 from flowtex.errors import FieldError
 from flowtex.field.dates import as_seconds
-from flowtex.field.steps import LazySteps, map_steps, typical_steps
+from flowtex.field.steps import LazySteps, examined_steps, map_steps, typical_steps
 from flowtex.field.units import speed_unit, symbol, velocity_units
 
 LINE_WIDTH = 1e-7  #: A surface narrower than this share of its length is a line.
@@ -260,11 +260,11 @@ def filled_gaps(
 
     Such nodes are drawn without streaks, and in the colour of NaN: the uncertainty of their
     direction is 1. Its name, empty without gaps, follows the scalars and their units. ``axes`` is
-    the number of axes of the nodes. Of lazy steps with missing data three are compared.
+    the number of axes of the nodes. Of a long series of lazy steps some are compared.
     """
     unchanged = velocity, {} if scalars is None else scalars, units or {}, ""
     if isinstance(velocity, LazySteps):
-        numbers = typical_steps(len(velocity)) if not _known(velocity[0]).all() else []
+        numbers = _steps_to_compare(velocity)
         masks: list[Bools] | Bools = [_known(velocity[number]) for number in numbers]
     else:
         try:
@@ -281,6 +281,12 @@ def filled_gaps(
     whole = map_steps(velocity, partial(_filled, sometimes))
     data = {**unchanged[1], **{k: v for k, v in additions.items() if k not in unchanged[1]}}
     return whole, data, {"speed": unit, **(units or {})}, NO_DATA
+
+
+def _steps_to_compare(velocity: LazySteps) -> list[int]:
+    if velocity.quick:
+        return examined_steps(len(velocity), velocity[0].size)
+    return [] if _known(velocity[0]).all() else typical_steps(len(velocity))
 
 
 def _filled(sometimes: Bools, step: Floats) -> Floats:

@@ -20,7 +20,7 @@ from flowtex.errors import FieldError
 from flowtex.field.derived.gradient import NodeGradient, node_gradient, true_velocity
 from flowtex.field.finer import check_derivable, finest_of
 from flowtex.field.steps import LazySteps, Steps, map_steps, scaled_steps
-from flowtex.field.units import NONE, VELOCITIES, measures, parsed
+from flowtex.field.units import NONE, VELOCITIES, factor, measures, parsed, speed_unit
 from flowtex.field.validation import NO_DATA, known_nodes
 
 #: Functions of the gradient a[m, n], the change of component m along direction n.
@@ -126,6 +126,9 @@ def derived_unit(name: str, field: Any) -> str:
     """Return the unit of a derived scalar of a field; empty where it is unknown."""
     time = field.time_unit
     if not time or (field.velocity_unit and not field.length_unit):
+        return ""
+    own = speed_unit(field.length_unit, time)
+    if field.velocity_unit not in ("", own) and factor(field.velocity_unit, own) is None:
         return ""
     if "/" in time:
         time = f"({time})"

@@ -32,7 +32,9 @@ ACROSS = re.compile(r"^(x|x_?c|x_?g|x_\w+|xp1|rlon|projection_x_coordinate)$", r
 UPWARD = re.compile(r"^(y|y_?c|y_?g|y_\w+|yp1|rlat|projection_y_coordinate)$", re.I)
 #: Names of polar coordinates: the distance from the centre, and the angle.
 RADII = re.compile(r"^(r|rho|radius|radial\w*|range)$", re.I)
-ANGLES = re.compile(r"^(phi|theta|azimuth|angle|az|polar_angle)$", re.I)
+ANGLES = re.compile(r"^(phi|theta|angle|polar_angle)$", re.I)
+#: Names of angles clockwise from north.
+AZIMUTHS = re.compile(r"^(az|azi|azimuth\w*|bearing|heading)$|azimuth", re.I)
 #: Letters for the place in a cell of a staggered grid: its middle first.
 MIDDLES = ("rho", "t", "c", "r", "")
 #: Parts of the names of two coordinates that belong together.
@@ -124,6 +126,8 @@ def find_places(
             continue
         turned = ", converted from radians" if degrees[0] is not at[0] else ""
         a, b = degrees
+        if _is_one_place(a, b):  # as of an ideal case
+            continue
         unset = (a == 0) & (b == 0) if min(a.shape) > 1 else np.False_
         if unset.sum() > 1:  # where a model leaves out land
             a, b = np.where(unset, np.nan, a), np.where(unset, np.nan, b)
@@ -142,6 +146,8 @@ def find_places(
     for x, y in _pairs(array, dims, datasets, {"X": ACROSS, "Y": UPWARD}):
         if (at := _at_nodes(x, y, dims, shape, drawn)) is not None:
             return _plane(x, y, *at, _mapping(array, datasets))
+    if (cells := _even_cells(array, dims, shape, datasets)) is not None:
+        return cells
     lines = [_own_line(array, d, datasets) for d in dims]
     if any_axes and lines[0] is not None and lines[1] is not None:
         return _of_lines(lines[1], lines[0])
@@ -167,6 +173,31 @@ def _check_two_of_space(array: xr.DataArray, dims: tuple[str, ...]) -> None:
         f"diagram, pass arrays in units that belong together, and 1 along the time t: "
         f"flowtex.render({space}, t, {array.name}, np.ones_like({array.name}))"
     )
+
+
+def _is_one_place(a: Floats, b: Floats) -> bool:
+    """Return whether all nodes have one longitude and latitude."""
+    same = (np.nanmax(c, initial=-np.inf) == np.nanmin(c, initial=np.inf) for c in (a, b))
+    return a.size * b.size > 1 and all(same)
+
+
+def _even_cells(
+    array: xr.DataArray,
+    dims: tuple[str, ...],
+    shape: tuple[int, ...],
+    datasets: Sequence[xr.Dataset],
+) -> Places | None:
+    """Return places on cells whose sizes in m the attributes DX and DY of WRF give."""
+    sizes = [ds.attrs for ds in datasets if {"DX", "DY"} <= {*ds.attrs}]
+    if not sizes or not all(re.match("south_north|west_east", dim) for dim in dims):
+        return None
+    lines = []
+    for dim, count, name in zip(dims, shape, ("DY", "DX"), strict=True):
+        side = 0.5 if dim.endswith("_stag") else 0.0
+        lines.append((np.arange(count) - side) * float(sizes[0][name]))
+    b, a = np.meshgrid(*lines, indexing="ij")
+    why = "cells of DX and DY, as longitude and latitude are the same everywhere"
+    return Places(a, b, is_earth=False, is_line=True, why=why, unit="m")
 
 
 def ordered(array: xr.DataArray, record: Record, step: str) -> xr.DataArray:
@@ -316,7 +347,7 @@ def _is_degrees(c: xr.DataArray) -> bool:
     unit, name = str(c.attrs.get("units", "")), str(c.attrs.get("standard_name", c.name))
     if name in ("grid_longitude", "grid_latitude"):  # of a rotated pole
         return False
-    if units.is_angle(unit) and not ANGLES.match(str(c.name)):
+    if units.is_angle(unit) and not (ANGLES.match(name) or AZIMUTHS.search(name)):
         return True
     # Some models give a wrong unit.
     return "lon" in name.lower() or "lat" in name.lower() or bool(re.match("glam|gphi", name))
@@ -365,11 +396,15 @@ def _of_lines(x: xr.DataArray, y: xr.DataArray) -> Places:
     """Return positions on axes of any name, such as x1 and x2, or of polar coordinates."""
     a, b = _numbers(x)[None], _numbers(y)[:, None]
     for radius, angle, r, turn in ((x, y, a, b), (y, x, b, a)):
-        if not (RADII.match(str(radius.name)) and ANGLES.match(str(angle.name))):
+        named = str(angle.name), str(angle.attrs.get("standard_name", ""))
+        is_azimuth = any(map(AZIMUTHS.search, named))
+        if not (RADII.match(str(radius.name)) and (is_azimuth or ANGLES.match(named[0]))):
             continue
         unit = str(angle.attrs.get("units", ""))
         degrees = units.parsed(unit) is None and np.ptp(turn) > RADIANS[0][1]
         turn = turn * (units.factor("degree" if degrees else unit, "radian") or 1.0)
+        if is_azimuth:
+            turn = np.pi / 2 - turn
         unit = str(radius.attrs.get("units", ""))
         unit = units.symbol(unit) if units.parsed(unit) is not None else ""
         a, b, turn = np.broadcast_arrays(r * np.cos(turn), r * np.sin(turn), turn)
@@ -406,8 +441,18 @@ def _plane(
     return Places(a, b, is_earth=False, is_line=x.ndim == 1, why=why, unit=unit)
 
 
+def _mapping_of_axes(text: str, dims: set[str]) -> str:
+    """Return the name of a grid mapping, as in ``"crs: x y geo: lat lon"`` that of the axes."""
+    parts = re.findall(r"(\S+):((?:\s+[^\s:]+(?=\s|$))+)", text)
+    for name, axes in parts:
+        if dims & set(axes.split()):
+            return str(name)
+    return str(parts[0][0]) if parts else text.strip()
+
+
 def _mapping(array: xr.DataArray, datasets: Sequence[xr.Dataset]) -> dict[str, Any] | None:
-    name = array.attrs.get("grid_mapping", array.encoding.get("grid_mapping", "spatial_ref"))
+    text = array.attrs.get("grid_mapping", array.encoding.get("grid_mapping", "spatial_ref"))
+    name = _mapping_of_axes(str(text), {*map(str, array.dims)})
     for ds in ({**array.coords}, *datasets):
         if name in ds and {"grid_mapping_name", "crs_wkt"} & set(attrs := dict(ds[name].attrs)):
             return attrs

@@ -19,6 +19,7 @@ unknown, a curvilinear grid of the Earth    along the grid, as WRF, ROMS, NEMO a
 
 from __future__ import annotations
 
+import os
 import re
 from collections.abc import Callable
 from dataclasses import dataclass, replace
@@ -34,15 +35,19 @@ from flowtex.field.steps import typical_steps
 from flowtex.sources.datasets import labels, select
 from flowtex.sources.datasets.align import align
 from flowtex.sources.datasets.axes import (
+    LEVEL,
     NODES,
+    TIME,
     Choice,
     Drawn,
     axis_direction,
+    axis_kind,
     choose,
     coordinate_of,
     horizontal_dims,
+    is_dates,
 )
-from flowtex.sources.datasets.coordinates import Beside, Places, ordered
+from flowtex.sources.datasets.coordinates import LATITUDE, LONGITUDE, Beside, Places, ordered
 from flowtex.sources.datasets.masks import Mask, find_masks, is_constant, moves_over_land
 from flowtex.sources.datasets.select import Pair
 from flowtex.sources.datasets.staggered import find_grid, unrepeated
@@ -52,11 +57,14 @@ from flowtex.sources.datasets.values import (
     checked_component,
     examined,
     read_step,
+    steps_to_examine,
 )
+from flowtex.sources.datasets.vertical import is_vertical
 from flowtex.sources.models.conventions import find_mesh, join_faces
 from flowtex.sources.models.model_mesh import POINTS, Mesh
 from flowtex.sources.notices import Record
 from flowtex.sources.opening.dataset_files import Datasets, as_datasets
+from flowtex.sources.reader_errors import values_in
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -67,12 +75,16 @@ DIRECTIONS = {"earth": "eastward and northward", "grid": "along the grid", "plan
 
 #: Coordinates of models whose components are along the grid: WRF, NEMO, ROMS, POP, MITgcm, MOM.
 MODELS = re.compile(r"XLONG|nav_lon|lon_(rho|u|v|psi)\b|glam|[TU]_?LONG?|XC|XG|geolon")
+#: Greatest angle in radians.
+MOST_RADIANS = 2 * np.pi + 1e-3
 #: The reason where neither names nor positions tell.
 UNKNOWN = "a curvilinear grid, and no name that tells"
 #: Sine of the angle between rows and parallels from which on the directions matter.
 NOTABLE_TURN = 0.02
 #: Share of nodes at rest from which on those of a staggered grid count as land.
 LAND_SHARE = 0.01
+#: Share of the moving nodes up to which a mask leaves none.
+MOST_LEFT = 0.02
 
 
 class Orientation(NamedTuple):
@@ -93,8 +105,14 @@ def component_units(pair: Pair, record: Record) -> tuple[str, tuple[float, float
     if pair.kind in (select.FROM, select.TOWARDS):
         angle = str(pair.v.attrs.get("units", "")) or "degree"
         record("units", f"{pair.v.name} is a {pair.kind} north, clockwise")
-        return select.velocity_unit(pair.u), (1.0, units.factor(angle, "radian") or 1.0)
-    one, other = select.velocity_unit(pair.u), select.velocity_unit(pair.v)
+        unit = select.velocity_unit(pair.u, any_kind=pair.named)
+        return unit, (1.0, units.factor(angle, "radian") or 1.0)
+    if pair.kind == select.ANGLE:
+        angle = str(pair.v.attrs.get("units", "")) or _unit_of_angles(pair.v)
+        record("units", f"{pair.v.name} is in {angle}, counterclockwise from x")
+        unit = select.velocity_unit(pair.u, any_kind=pair.named)
+        return unit, (1.0, units.factor(angle, "radian") or 1.0)
+    one, other = (select.velocity_unit(a, any_kind=pair.named) for a in (pair.u, pair.v))
     if not one or not other:
         if one != other:
             named, bare = (pair.u, pair.v) if one else (pair.v, pair.u)
@@ -108,6 +126,15 @@ def component_units(pair: Pair, record: Record) -> tuple[str, tuple[float, float
     if factor != 1.0:
         record("units", f"{pair.v.name} converted from {other} to {one}")
     return one, (1.0, factor)
+
+
+def _unit_of_angles(array: xr.DataArray) -> str:
+    """Return the unit of angles without one: radians where all are within a turn."""
+    first = array.isel({d: 0 for d in array.dims if d not in horizontal_dims(array)})
+    greatest = float(np.nanmax(np.abs(values_in(first)), initial=0.0))
+    if greatest <= MOST_RADIANS:
+        return "radian"
+    return "degree"
 
 
 def orientation(flow: Flow, wanted: str | None) -> Orientation:
@@ -168,6 +195,20 @@ class Flow:
     mean: Callable[[int], Floats] | None = None  #: Of the members of an ensemble.
     members: tuple[Flow, ...] = ()  #: These, of which this is the mean.
     member_dim: str = ""  #: Dimension of the members.
+
+    @property
+    def name(self) -> str:
+        """Name of the vectors: both components, or what these have in common."""
+        names = str(self.pair.u.name), str(self.pair.v.name)
+        shared = os.path.commonprefix(names).rstrip("_")  # noqa: RUF071
+        if self.is_velocity or not shared:
+            return ", ".join(names)
+        return shared
+
+    @property
+    def is_velocity(self) -> bool:
+        """Whether the unit is one of velocity, or unknown; other vectors are drawn if named."""
+        return not self.unit or units.measures(self.unit, units.VELOCITIES)
 
     def components(self, step: int) -> Floats:
         """Return the components eastward and northward, or along x and y, (2, ...)."""
@@ -259,15 +300,75 @@ def read_flow(data: Any, options: FieldOptions, record: Record) -> Flow:
     if drawn.level:
         record("select", f"level: {drawn.level}", caption=drawn.level)
     pair = replace(pair, u=one, v=two)
+    _check_surface(pair)
     if mesh is None:
         flow = _on_rows(pair, datasets, drawn, record)
     else:
         flow = _on_faces(mesh, pair, datasets, drawn, record)
     found = orientation(flow, options.components)
+    is_curved = flow.places.is_earth and not flow.places.is_line and mesh is None
+    if found.along == "grid" and is_curved:
+        flow = _right_handed(flow)
     if found.why == UNKNOWN and _is_turned(flow):
         text = f"{pair.u.name} and {pair.v.name} are taken along the grid, which is turned against "
         record("components", text + "north; components='earth' if they are not", notable=True)
     return _masked(replace(flow, unit=unit, orientation=found), factors, options.mask)
+
+
+def _check_surface(pair: Pair) -> None:
+    """Raise for components that are not along the axes of their surface."""
+    u, v = pair.u, pair.v
+    kinds = {dim: axis_kind(u, dim) for dim in horizontal_dims(u)}
+    if LEVEL not in kinds.values() or len(kinds) < 2 or is_vertical(v):
+        return
+    level, other = sorted(kinds, key=lambda dim: kinds[dim] != LEVEL)
+    if kinds[other] == TIME and is_dates(u.coords[other]):
+        raise FieldError(
+            f"{u.name} and {v.name} vary along {other} and {level}, a section in time, along which "
+            "nothing flows; draw arrows with matplotlib, as in ax.quiver or ax.barbs"
+        )
+    on_earth = LONGITUDE.match(other) or LATITUDE.match(other)
+    if on_earth or (pair.along == "earth" and coordinate_of(u, other) is not None):
+        along = u.name if LONGITUDE.match(other) else v.name
+        raise FieldError(
+            f"{u.name} and {v.name} are horizontal, but the data are a vertical section along "
+            f"{level} and {other}, where nothing is known of the vertical flow; name a vertical "
+            f'component as well, as in u="{along}", v="w", or draw data of a level'
+        )
+
+
+def _right_handed(flow: Flow) -> Flow:
+    """Return a flow whose axes are those of its components, where the grid was turned over."""
+    ones, zeros = np.ones_like(flow.places.a), np.zeros_like(flow.places.a)
+    across = flow.places.turned(flow.ahead, ones, zeros)
+    upward = flow.places.turned(flow.ahead, zeros, ones)
+    names = f"{flow.pair.u.name} and {flow.pair.v.name}"
+    advice = "components='earth' if they are eastward and northward"
+    if np.nanmedian(across[0] * upward[1] - across[1] * upward[0]) > 0:
+        if np.nanmax(across[0]) < 0 and np.nanmax(upward[1]) < 0:
+            text = f"rows of the grid run southward and columns westward, and {names} along these; "
+            flow.record("components", f"{text}{advice}")
+        return flow
+    rows, columns = flow.ahead
+    turned = "rows"
+    if np.nanmean(across[0]) < np.nanmean(upward[1]):
+        turned = "columns"
+        columns = -columns
+    else:
+        rows = -rows
+    text = f"the {turned} of the grid run backwards, as after [::-1]; {names} are taken along the "
+    flow.record("components", f"{text}grid before that; {advice}", notable=True)
+    return replace(flow, ahead=(rows, columns))
+
+
+def _ahead(array: xr.DataArray, rows: str, columns: str) -> tuple[int, int]:
+    """Return the directions of rows and columns, by their coordinates, or as GRIB scans them."""
+    ahead = [axis_direction(array, dim) for dim in (rows, columns)]
+    if coordinate_of(array, rows) is None and array.attrs.get("GRIB_jScansPositively") == 0:
+        ahead[0] = -1
+    if coordinate_of(array, columns) is None and array.attrs.get("GRIB_iScansNegatively") == 1:
+        ahead[1] = -1
+    return ahead[0], ahead[1]
 
 
 def _is_turned(flow: Flow) -> bool:
@@ -299,7 +400,7 @@ def _on_rows(pair: Pair, datasets: Datasets, drawn: Drawn, record: Record) -> Fl
         (rows, columns),
         datasets,
         record,
-        ahead=(axis_direction(pair.u, rows), axis_direction(pair.v, columns)),
+        ahead=_ahead(pair.u, rows, columns),
         trimmed=trimmed,
         staggered=staggered,
     )
@@ -320,10 +421,11 @@ def _on_faces(mesh: Mesh, pair: Pair, datasets: Datasets, drawn: Drawn, record: 
 
 def _masked(flow: Flow, factors: tuple[float, float], wanted: Any) -> Flow:
     record, axes = flow.record, flow.values.axes
-    one, two = (
-        checked_component(array, factor, axes, wanted, record)
-        for array, factor in zip((flow.pair.u, flow.pair.v), factors, strict=True)
-    )
+    turn = 2 * np.pi / factors[1] * (1 + 1e-6)
+    is_direction = flow.pair.kind in (select.FROM, select.TOWARDS)
+    limits = (-turn, turn) if is_direction and wanted is not False else None
+    one = checked_component(flow.pair.u, factors[0], axes, wanted, record)
+    two = checked_component(flow.pair.v, factors[1], axes, wanted, record, limits=limits)
     flow = replace(flow, values=replace(flow.values, components=(one, two)))
     masks = []
     for mask in find_masks((flow.pair.u, flow.pair.v), flow.datasets, wanted):
@@ -333,41 +435,72 @@ def _masked(flow: Flow, factors: tuple[float, float], wanted: Any) -> Flow:
                 raise FieldError(f"mask is {wanted!r}, which lies elsewhere than the velocity")
             text = f"{mask.array.name} lies at other positions or times, and is not used as a mask"
             record("mask", text, notable=mask.array.ndim > 1)
-        elif (flow.mesh is None or flow.cells[0] in part_of.dims) and _applies(
-            flow, mask, part_of, wanted
-        ):
-            masks.append((part_of.variable, mask))
+        elif flow.mesh is None or flow.cells[0] in part_of.dims:
+            used = _applied(flow, mask, part_of, wanted)
+            if used is not None:
+                masks.append((part_of.variable, used))
     values = replace(flow.values, masks=tuple(masks))
     if flow.staggered:  # those at rest may be land
-        u, v = values.read(0)
+        u, v = values.read(_first_moving(flow))
         still: Bools = (u == 0) & (v == 0)
-        if still.mean() > LAND_SHARE:
-            record("mask", f"{still.mean():.0%} masked: at rest in the first step, as on land")
+        if LAND_SHARE < still.mean() < 1:
+            record("mask", f"{still.mean():.0%} masked: at rest, as on land")
             values = replace(values, land=still)
     return replace(flow, values=values)
 
 
-def _applies(flow: Flow, mask: Mask, part: xr.DataArray, wanted: Any) -> bool:
+def _applied(flow: Flow, mask: Mask, part: xr.DataArray, wanted: Any) -> Mask | None:
+    """Return a mask that hides what it means, turned if need be; ``None`` for one without use."""
     axes, variable = flow.values.axes, part.variable
-    marks, land = [], []
+    marks, values, moving = [], [], _first_moving(flow)
     for at in examined(part, axes):
-        bad = ~mask.is_data(read_step(variable, 0, at, axes=axes))
+        bad = ~mask.is_data(read_step(variable, moving, at, axes=axes))
+        if not flow.staggered:
+            u = flow.values.components[0].read(moving, at, axes=axes)
+        elif at is None:
+            bad = flow.values.at_cells(bad)
+            u = flow.values.read(moving)[0]
+        else:
+            u = np.full(bad.shape, np.nan)
         marks.append(bad.ravel())
-        if mask.is_land and not flow.staggered:
-            u = flow.values.components[0].read(0, at, axes=axes)
-            land.append(u[bad])
-    share = float(np.mean(np.concatenate(marks)))
+        values.append(u.ravel())
+    is_bad, u = np.concatenate(marks), np.concatenate(values)
     option = f"mask={part.name!r}"
+    moves = np.nan_to_num(u) != 0
+    if wanted is None and not mask.is_flag and _hides_the_flow(is_bad, moves):
+        share = float(np.mean(~is_bad))
+        text = f"{mask.text} holds for all that moves, so its opposite is taken: {share:.0%} masked"
+        flow.record("mask", f"{text}; mask=False draws it", notable=True)
+        return replace(mask, reverse=not mask.reverse)
     is_wind = mask.is_land and wanted is None and moves_over_land(flow.pair.u)
-    if is_wind and not (land and is_constant(np.concatenate(land))):
+    if is_wind and (flow.staggered or not is_constant(u[is_bad])):
         flow.record("mask", f"{mask.text}: not masked, as air moves over land too; {option} masks")
-        return False
+        return None
+    share = float(np.mean(is_bad))
     steps = typical_steps(part.shape[0] if part.ndim > axes else 1)
     read = (read_step(variable, step, axes=axes) for step in steps)
     if share == 1.0 and wanted is None and not any(mask.is_data(step).any() for step in read):
         flow.record("mask", f"{mask.text} everywhere, so {part.name} is not used")
-        return False
+        return None
     if share:
         text = f"{share:.0%} masked: {mask.text}; mask=False draws it"
         flow.record("mask", text, notable=mask.is_flag)
-    return True
+    return mask
+
+
+def _first_moving(flow: Flow) -> int:
+    """Return the first examined step in which a component is not zero everywhere, else 0."""
+    part, axes = flow.values.components[0], flow.values.axes
+    for step in steps_to_examine(part.variable, axes):
+        if np.nan_to_num(part.sample(step, axes)).any():
+            return step
+    return 0
+
+
+def _hides_the_flow(is_bad: Bools, moves: Bools) -> bool:
+    """Return whether a mask hides (nearly) all that moves, and its opposite only what rests."""
+    if is_bad.all() or not moves.any():
+        return False
+    left = float(np.mean(~is_bad[moves]))
+    opposite = float(np.mean(moves[~is_bad]))
+    return left < MOST_LEFT and opposite < MOST_LEFT

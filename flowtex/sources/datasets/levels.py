@@ -28,7 +28,7 @@ FROM_THE_TOP = re.compile(r"generalized.height", re.IGNORECASE)
 FROM_THE_GROUND = re.compile(r"model_level_number", re.IGNORECASE)
 #: Words for a velocity, or for levels, in the sea.
 AT_SEA = re.compile(r"sea_water|ocean|current|water|^sea_", re.IGNORECASE)
-#: Names of currents in CMIP and NEMO; also used for winds, which pressures tell from them.
+#: Names of currents in CMIP and NEMO.
 CURRENTS = re.compile(r"^[uv]o$")
 #: Levels of pressure that models of weather use, in hPa.
 USUAL_HPA = (1000, 950, 925, 900, 850, 800, 700, 600, 500, 400, 300, 250, 200, 150, 100, 50)
@@ -71,16 +71,15 @@ def _words(coordinate: xr.DataArray) -> str:
 
 
 def _is_at_sea(coordinate: xr.DataArray, velocity: xr.DataArray) -> bool:
-    declared = str(coordinate.attrs.get("standard_name", ""))
+    declared, unit = (str(coordinate.attrs.get(n, "")) for n in ("standard_name", "units"))
     if declared.startswith(("atmosphere", "air_")):
         return False
-    if units.factor(str(coordinate.attrs.get("units", "")), "dbar") == 1.0:
+    if AT_SEA.search(declared) or units.factor(unit, "dbar") == 1.0:
         return True
-    if CURRENTS.match(str(velocity.name)) and not is_pressure(coordinate):
-        return True
-    named = [velocity.attrs.get(n, "") for n in ("standard_name", "long_name")]
-    texts = [declared, str(velocity.name), *map(str, named)]
-    return any(map(AT_SEA.search, texts))
+    if units.measures(unit, units.PRESSURES):
+        return False
+    named = (str(velocity.attrs.get(n, "")) for n in ("standard_name", "long_name"))
+    return any(map(AT_SEA.search, named)) or CURRENTS.match(str(velocity.name)) is not None
 
 
 def _is_length(coordinate: xr.DataArray) -> bool:

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -48,16 +48,60 @@ class Mask:
     array: xr.DataArray
     text: str  #: The condition for values that are no data, such as ``"lsm == 1"``.
     bad: tuple[float, ...] = ()  #: Values that mark no data; without any, those up to a half.
-    reverse: bool = False  #: Whether values above a half mark no data.
+    reverse: bool = False  #: Whether the opposite marks no data.
     #: Whether values there may be data nevertheless, as winds are on land.
     is_land: bool = False
     is_flag: bool = False  #: Whether it is a flag of the quality of values.
+    #: Bits of integers that belong to each value of ``bad``; empty where values are compared whole.
+    bits: tuple[int, ...] = ()
 
     def is_data(self, values: AnyArray) -> Bools:
         """Return where values of the variable mark data."""
-        if self.bad:
-            return ~np.isin(values, self.bad)
-        return np.asarray(~(values > 0.5) if self.reverse else values > 0.5)
+        if self.bits:
+            is_data = ~self._has_bits(values)
+        elif self.bad:
+            is_data = ~np.isin(values, self.bad)
+        else:
+            is_data = np.asarray(values > 0.5)
+        if self.reverse:
+            return ~is_data
+        return is_data
+
+    def _has_bits(self, values: AnyArray) -> Bools:
+        numbers = np.nan_to_num(values).astype(np.int64)
+        found = np.zeros(numbers.shape, dtype=bool)
+        for bit, value in zip(self.bits, self.bad, strict=True):
+            found |= (numbers & bit) == int(value)
+        return found
+
+
+class Flags(NamedTuple):
+    """The meanings of a flag: values, and the bits of each that are compared, if not all."""
+
+    values: dict[str, float]
+    bits: dict[str, int]
+
+    @classmethod
+    def of(cls, array: xr.DataArray) -> Flags:
+        """Return the flags that the attributes of CF declare."""
+        meanings = str(array.attrs.get("flag_meanings", "")).split()
+        bits = [int(bit) for bit in declared_numbers(array, "flag_masks")]
+        values = (
+            declared_numbers(array, "flag_values") or bits or list(map(float, range(len(meanings))))
+        )
+        return cls(
+            dict(zip(meanings, values, strict=False)), dict(zip(meanings, bits, strict=False))
+        )
+
+    def mask(self, array: xr.DataArray, words: Iterable[str], **kind: bool) -> Mask | None:
+        """Return the mask of values with one of some meanings; ``None`` without any."""
+        words = list(words)
+        if not words:
+            return None
+        text = f"{array.name} is {' or '.join(words)}"
+        bad = tuple(float(self.values[word]) for word in words)
+        bits = tuple(self.bits[word] for word in words if word in self.bits)
+        return Mask(array, text, bad, bits=bits, **kind)
 
 
 def find_masks(
@@ -83,23 +127,22 @@ def find_masks(
 
 def _mask(array: xr.DataArray, name: str, *, is_flag: bool, is_wanted: bool) -> Mask | None:
     standard = str(array.attrs.get("standard_name", ""))
-    meanings = str(array.attrs.get("flag_meanings", "")).split()
-    values = np.atleast_1d(array.attrs.get("flag_values", range(len(meanings)))).tolist()
-    flags = dict(zip(meanings, values, strict=False))
-    if is_flag or standard.endswith(("status_flag", "quality_flag")):
-        bad = {word: float(flag) for word, flag in flags.items() if BAD_WORDS.search(word)}
-        text = f"{name} is {' or '.join(bad)}"
-        return Mask(array, text, tuple(bad.values()), is_flag=True) if bad else None
+    flags = Flags.of(array)
+    is_flag = is_flag or standard.endswith(("status_flag", "quality_flag"))
+    bad = flags.mask(array, filter(BAD_WORDS.search, flags.values), is_flag=True)
+    if is_flag and bad is not None:
+        return bad
     if name in WET:
         return Mask(array, f"{name} == {1 - WET[name]}", bad=(1.0 - WET[name],))
-    if not (standard in STANDARD or SEA.match(name) or LAND.match(name) or is_wanted):
+    is_mask = standard in STANDARD or SEA.match(name) or LAND.match(name) or is_wanted
+    if not is_mask and not is_flag:
         return None
-    land = [word for word in flags if LAND_WORDS.search(word)]
-    if land or any(map(SEA_WORDS.search, flags)):
-        land = land or [word for word in flags if not SEA_WORDS.search(word)]
-        values = tuple(float(flags[word]) for word in land)
-        text = f"{name} is {' or '.join(land)}"
-        return Mask(array, text, values, is_land=True) if land else None
+    land = [word for word in flags.values if LAND_WORDS.search(word)]
+    if land or any(map(SEA_WORDS.search, flags.values)):
+        land = land or [word for word in flags.values if not SEA_WORDS.search(word)]
+        return flags.mask(array, land, is_land=True)
+    if not is_mask:
+        return None
     if name.lower() == "xland":
         return Mask(array, f"{name} == 1", bad=(1.0,), is_land=True)
     if STANDARD.get(standard, not LAND.match(name)):
@@ -124,16 +167,43 @@ def is_constant(values: Floats) -> bool:
     return bool(counts.max() >= SAME_ON_LAND * len(values))
 
 
+def declared_numbers(array: xr.DataArray, name: str) -> list[float]:
+    """Return the numbers of an attribute, which may be text or a list; empty without it."""
+    given = array.attrs.get(name)
+    if given is None:
+        return []
+    if isinstance(given, str):
+        given = re.sub(r"[\[\](),;]|(?<=\d)[bsfd]\b", " ", given).split()
+    try:
+        return [float(number) for number in np.ravel(given)]
+    except (TypeError, ValueError) as error:
+        raise FieldError(
+            f"{array.name} has {name} {array.attrs[name]!r}; expected numbers. Set or delete it, "
+            f"as in del ds[{str(array.name)!r}].attrs[{name!r}]"
+        ) from error
+
+
 def valid_range(array: xr.DataArray) -> tuple[float, float] | None:
     """Return the least and greatest valid value of a variable that xarray has unpacked."""
-    attrs, encoding = array.attrs, array.encoding
-    low, high = np.atleast_1d(attrs.get("valid_range", (-np.inf, np.inf)))[:2]
-    low, high = attrs.get("valid_min", low), attrs.get("valid_max", high)
-    if not (np.isfinite(float(low)) or np.isfinite(float(high))):
+    encoding = array.encoding
+    low, high = -np.inf, np.inf
+    whole = True
+    for name, number in (("valid_range", 2), ("valid_min", 1), ("valid_max", 1)):
+        numbers = declared_numbers(array, name)
+        if not numbers:
+            continue
+        if len(numbers) != number:
+            raise FieldError(
+                f"{array.name} has {name} {array.attrs[name]!r}; expected {number} numbers. Set or "
+                f"delete it, as in del ds[{str(array.name)!r}].attrs[{name!r}]"
+            )
+        low = numbers[0] if name != "valid_max" else low
+        high = numbers[-1] if name != "valid_min" else high
+        whole = whole and np.asarray(array.attrs[name]).dtype.kind in "iu"
+    if not (np.isfinite(low) or np.isfinite(high)):
         return None
-    ends = [float(low), float(high)]
+    ends = [low, high]
     packed = np.dtype(encoding.get("dtype", float)).kind in "iu"
-    whole = all(np.asarray(end).dtype.kind in "iu" for end in (low, high) if np.isfinite(end))
     if packed and whole:
         # The range is in the unit of the packed numbers if it has their type.
         scale, offset = encoding.get("scale_factor", 1.0), encoding.get("add_offset", 0.0)
@@ -159,6 +229,16 @@ _USUAL_RATIO = 0.5
 _FEW = 10
 #: Least share of fill values in small arrays.
 _SHARE = 0.01
+
+
+def undeclared_fills(values: Floats, known: tuple[float, ...] = ()) -> tuple[float, ...]:
+    """Return all values of an array that stand for missing data, beside known ones."""
+    rest = values[~np.isin(values, known)]
+    fills: list[float] = []
+    while (found := undeclared_fill(rest)) is not None:
+        fills.append(found)
+        rest = rest[rest != found]
+    return tuple(fills)
 
 
 def undeclared_fill(values: Floats) -> float | None:

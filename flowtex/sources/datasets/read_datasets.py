@@ -21,10 +21,11 @@ from flowtex._util.array_types import Floats
 from flowtex.errors import FieldError
 from flowtex.field import units
 from flowtex.field.dates import as_seconds
+from flowtex.field.derived import magnitude_label
 from flowtex.field.earth import GLOBE
 from flowtex.field.field_arrays import GridArrays, TriangleArrays
 from flowtex.field.options import OF_MESHES, FieldOptions
-from flowtex.field.steps import LazySteps
+from flowtex.field.steps import LazySteps, examined_steps
 from flowtex.field.uncertainty import spread_name
 from flowtex.sources.datasets import labels, select
 from flowtex.sources.datasets.axes import (
@@ -74,7 +75,7 @@ def read_datasets(
     u, v = select.two_names(options.vectors)
     datasets = as_datasets(data, record)
     with record.explain():
-        if u is not None and v is not None and is_section(datasets, v):
+        if u is not None and v is not None and is_section(datasets, u, v):
             section = read_section(datasets, options, record, datasets.close, name=name)
             record.notify()
             datasets.close()
@@ -98,6 +99,8 @@ def read_datasets(
             for word in ("units", "long_name")
         )
         names = {key: text for key, text in names.items() if len(text) <= LONGEST_NAME}
+        if not flow.is_velocity:
+            names["speed"] = magnitude_label(flow.name, flow.unit)
         words: dict[str, Any] = {"name": caption, "units": units_of, "long_names": names}
         by_regions = regions and flow.mesh is None and spread is None
         arrays: GridArrays | TriangleArrays | Regions | None
@@ -119,7 +122,7 @@ def _whole(
     count, record = flow.drawn.steps, flow.record
     nodes, arguments = _placed(flow, projection)
     # Velocity and speed use the same components.
-    read = LazySteps(count, flow.components)
+    read = LazySteps(count, flow.components, quick=flow.pair.u.chunks is None)
     own = {key: LazySteps(count, s.read) for key, s in scalars.items()}
     extra = {key: steps.map(nodes.at) for key, steps in own.items() if not scalars[key].on_faces}
     on_cells: dict[str, LazySteps] = {}
@@ -133,13 +136,14 @@ def _whole(
     elif flow.unit:
         arguments["velocity_unit"] = units.symbol(flow.unit)
     if nodes.projection is None:
-        arguments["vectors"] = f"{flow.pair.u.name}, {flow.pair.v.name}"
+        arguments["vectors"] = flow.name
     scale = (units.factor(flow.unit, "m/s") or 1.0) if flat and flow.unit else 1.0
     if spread is not None:
         extra[spread_name(uncertainty)] = LazySteps(count, spread).map(nodes.at)
     velocity = read.map(partial(_vectors, nodes, scale))
     if count > 1:
         _note_rest(read, flow)
+        _note_gaps(read, flow)
     arguments |= {"points": nodes.points, "velocity": velocity if count > 1 else velocity[0]}
     arguments |= {"times": flow.drawn.times, "scalars": extra, "cell_scalars": on_cells}
     arguments |= {"projection": nodes.projection, "reading": record.reading, **words}
@@ -162,6 +166,20 @@ def _note_rest(read: LazySteps, flow: Flow) -> None:
         time = f"{labels.text(times)} {flow.drawn.time_unit}".strip()
         text = f"the velocity is zero everywhere in the first step; step {first} ({time}) is the "
         flow.record("select", f"{text}first that is not", notable=True)
+
+
+def _note_gaps(read: LazySteps, flow: Flow) -> None:
+    """Record nodes that have data at some of the examined steps only."""
+    steps = examined_steps(len(read), read[0].size) if read.quick else []
+    known = [np.isfinite(read[n]).all(axis=0) for n in steps]
+    if not known:
+        return
+    always, ever = np.logical_and.reduce(known), np.logical_or.reduce(known)
+    lacking = ever & ~always
+    if lacking.any():
+        first = next(n for n, here in zip(steps, known, strict=True) if (ever & ~here).any())
+        text = f"{lacking.mean():.0%} of the nodes lack data at some times, such as step {first}; "
+        flow.record("mask", f"{text}nothing flows there then", notable=True)
 
 
 def _averaged(
@@ -223,6 +241,9 @@ def _units(flow: Flow) -> dict[str, str]:
     times = flow.drawn.times
     is_date = times is not None and np.asarray(times).dtype.kind in "mMO"
     time = "s" if is_date else flow.drawn.time_unit
+    if not flow.is_velocity:
+        length = "m" if flow.places.is_earth else flow.places.unit
+        return {"length_unit": length, "time_unit": time}
     if not flow.places.is_earth:
         length = flow.places.unit
         if not length and unit and units.factor(unit, "m/s") not in (None, 1.0):

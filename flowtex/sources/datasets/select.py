@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import product
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -55,10 +55,19 @@ AROUND = re.compile(
     r"^[uvw]?_?(phi|theta|t|a|az|azimuth|azimuthal|tangential|angular)$|^(azimuthal|tangential)_\w+$",
     re.I,
 )
+#: Names of angles, beside those of directions.
+ANGLES = re.compile(r"^(angle|phase|arg|argument|phi|theta)(_?\d*|_\w+)$|_angle$", re.I)
+#: Words of descriptions that say along what the components are.
+TO_EARTH = re.compile(r"\b(earth|true|geographic)[- _]?(rotated|relative|north)|to earth\b", re.I)
+TO_GRID = re.compile(r"\bgrid[- _]?(relative|oriented|aligned)|relative to (the )?grid", re.I)
+#: Coordinates, which are no components though their standard names say x and y.
+PLACES = re.compile(r"(coordinate|longitude|latitude)$")
 #: The two variables of a velocity are its components.
 CARTESIAN = "cartesian"
 #: They are along a radius and an angle.
 POLAR = "polar"
+#: They are a magnitude, and the angle from x, or from east, counterclockwise.
+ANGLE = "angle from x"
 #: They are the speed, and the direction from which the flow comes.
 FROM = "direction from"
 #: They are the speed, and the direction to which the flow goes.
@@ -76,6 +85,7 @@ class Pair:
     why: str  #: The reason of the choice.
     rank: int = 0  #: How likely they are the velocity, 0 being the most likely.
     kind: str = CARTESIAN  #: How the variables give the components.
+    named: bool = False  #: Whether the user named them, so that their unit may be any.
 
     def __str__(self) -> str:
         return f"{self.u.name}, {self.v.name} ({self.why})"
@@ -94,7 +104,7 @@ def choose_pair(datasets: Sequence[xr.Dataset], u: str | None, v: str | None) ->
         others = [a for ds in datasets for a in ds.data_vars.values() if _may_be_component(a)]
         pairs = [*pairs, *_speeds(others), *_polar(others)]
         found = next((p for p in pairs if (p.u.name, p.v.name) == (u, v)), None)
-        return found or Pair(one, other, _directions(one), "as named")
+        return replace(found or _as_named(one, other), named=True)
     if not pairs:
         raise FieldError(_no_pair(datasets))
     likely = [pair for pair in pairs if pair.rank == pairs[0].rank]
@@ -107,6 +117,24 @@ def choose_pair(datasets: Sequence[xr.Dataset], u: str | None, v: str | None) ->
         first = likely[0]
         raise FieldError(f'{text} one of them, as in u="{first.u.name}", v="{first.v.name}"')
     return likely[0]
+
+
+def _as_named(one: xr.DataArray, other: xr.DataArray) -> Pair:
+    """Return a pair that only its user knows: components, or a magnitude and an angle."""
+    if not _is_angle(other) or _is_angle(one):
+        return Pair(one, other, _directions(one), "as named")
+    if TURNS.search(str(other.name)):
+        why = f"{one.name} and {other.name}, a direction to"
+        return Pair(one, other, "earth", why, kind=TOWARDS)
+    why = f"{one.name} and {other.name}, an angle from x, counterclockwise"
+    return Pair(one, other, "earth", why, kind=ANGLE)
+
+
+def _is_angle(array: xr.DataArray) -> bool:
+    unit, name = str(array.attrs.get("units", "")), str(array.name)
+    if units.parsed(unit) is not None:
+        return units.is_angle(unit)
+    return bool(ANGLES.search(name) or TURNS.search(name))
 
 
 def two_names(vectors: str | None) -> tuple[str, str] | tuple[None, None]:
@@ -139,7 +167,7 @@ def _cartesian(arrays: Sequence[xr.DataArray], partners: Mapping[str, str]) -> l
             why = f"{source.replace('_', ' ')} with {word!r} and {partners[word]!r}"
             rank = _rank(u, source, rest)
             for v in arrays if rank is not None else ():
-                if _text(v, source) == partner and _match(u, v):
+                if _text(v, source) == partner and _match(u, v) and not _crossed(u, v, arrays):
                     pairs.setdefault((u.name, v.name), Pair(u, v, _directions(u), why, rank or 0))
     return list(pairs.values())
 
@@ -185,12 +213,12 @@ def _preference(pair: Pair) -> tuple[int, int, bool]:
     return pair.rank, -pair.u.ndim, pair.along != "earth"
 
 
-def velocity_unit(array: xr.DataArray) -> str:
-    """Return a variable's unit of velocity; empty where it has no unit."""
+def velocity_unit(array: xr.DataArray, *, any_kind: bool = False) -> str:
+    """Return a variable's unit of velocity, or of any kind; empty where it has no unit."""
     unit = str(array.attrs.get("units", "")).strip()
     if unit.lower() in units.NONE:
         return ""
-    if not units.measures(unit, units.VELOCITIES):
+    if not any_kind and not units.measures(unit, units.VELOCITIES):
         raise FieldError(
             f"the unit of {array.name!r} is {unit!r}, which is not a unit of velocity, such as "
             f"m/s, cm/s or knots. If it is wrong, set {array.name}.attrs['units']"
@@ -210,6 +238,7 @@ def _may_be_component(array: xr.DataArray) -> bool:
     fewest = 1 if _on_mesh(array) else 2
     named = f"{array.name} {array.attrs.get('standard_name', '')}"
     other = "bounds" in named or "_bnd" in named or MODIFIERS.search(named)
+    other = other or PLACES.search(str(array.attrs.get("standard_name", "")))
     other = other or SEA.match(str(array.name)) or LAND.match(str(array.name))
     return array.ndim >= fewest and array.dtype.kind in "fiu" and not other
 
@@ -244,6 +273,28 @@ def _match(u: xr.DataArray, v: xr.DataArray) -> bool:
     return u.name != v.name and (len(kinds) == 1 or False not in kinds)
 
 
+def _crossed(u: xr.DataArray, v: xr.DataArray, arrays: Sequence[xr.DataArray]) -> bool:
+    """Return whether names say that two variables are of different pairs, as u10 and v100 are."""
+    present = {_text(array, "name") for array in arrays}
+    names = _text(u, "name"), _text(v, "name")
+    if names[1] in _name_partners(names[0], PARTNERS):
+        return False
+    others = {*_name_partners(names[0], PARTNERS), *_name_partners(names[1], FIRST_OF)}
+    if others & present:
+        return True
+    stems = [re.sub(r"\d+", "", name) for name in names]
+    return names[0] != stems[0] and stems[1] in _name_partners(stems[0], PARTNERS)
+
+
+def are_partners(u: str, v: str) -> bool:
+    """Return whether two names are those of horizontal components, such as UVEL and VVEL."""
+    return v.lower() in _name_partners(u.lower(), PARTNERS)
+
+
+def _name_partners(name: str, partners: Mapping[str, str]) -> set[str]:
+    return {partner for _, _, partner in _partners(name, "name", partners)}
+
+
 def _rank(u: xr.DataArray, source: str, rest: str) -> int | None:
     """Return the rank of a pair, 0 for the most likely velocity; ``None`` for other variables."""
     is_velocity = _is_velocity(u)
@@ -265,6 +316,11 @@ def _directions(u: xr.DataArray) -> str:
     relative = u.attrs.get("GRIB_uvRelativeToGrid")
     if relative is not None:
         return "grid" if int(relative) else "earth"
+    described = " ".join(str(u.attrs.get(name, "")) for name in ("description", "long_name"))
+    if TO_EARTH.search(described):
+        return "earth"
+    if TO_GRID.search(described):
+        return "grid"
     for source in NAMES:
         words = _text(u, source).split("_")
         if "grid" in words or ("x" in words and source != "name"):

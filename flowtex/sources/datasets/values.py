@@ -7,7 +7,7 @@ for bit. Only names of files, and arrays that are read late, are sent to it.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import TYPE_CHECKING, Any, TypeAlias
 
@@ -17,11 +17,11 @@ from flowtex._util.array_types import Bools, Floats, Indices
 from flowtex._util.arrays import even_runs
 from flowtex.errors import FieldError
 from flowtex.field.grids.grid_nodes import find_closure
-from flowtex.field.steps import Nodes, typical_steps
+from flowtex.field.steps import Nodes, examined_steps, typical_steps
 from flowtex.sources import maps
 from flowtex.sources.datasets.coordinates import Places
-from flowtex.sources.datasets.masks import Mask, undeclared_fill, valid_range
-from flowtex.sources.datasets.select import FROM, POLAR, TOWARDS
+from flowtex.sources.datasets.masks import Mask, undeclared_fills, valid_range
+from flowtex.sources.datasets.select import ANGLE, FROM, POLAR, TOWARDS
 from flowtex.sources.datasets.staggered import Sides, centred
 from flowtex.sources.maps import Lines, NodeLines
 from flowtex.sources.notices import Record
@@ -73,24 +73,52 @@ class Component:
     variable: xr.Variable
     factor: float  #: From its unit to that of the first component, or to radians.
     valid: tuple[float, float] | None = None
-    fill: float | None = None  #: A value that means missing data, though no attribute names it.
+    #: Values that mean missing data, though no attribute names them; ``None`` draws all values.
+    fills: tuple[float, ...] | None = ()
+    #: Further values of that kind at steps that were not examined at first.
+    late_fills: dict[int, tuple[float, ...]] = field(default_factory=dict)
 
     def read(self, step: int, lines: Chosen, *, axes: int) -> Floats:
         """Return a step, with NaN for missing data."""
         values = read_step(self.variable, step, lines, axes=axes)
         with np.errstate(invalid="ignore"):
-            if self.fill is not None:
-                values[values == self.fill] = np.nan
+            for fill in (*(self.fills or ()), *self._late_fills(step, axes)):
+                values[values == fill] = np.nan
             if self.valid is not None:
                 values[(values < self.valid[0]) | (values > self.valid[1])] = np.nan
         return values * self.factor
 
+    def sample(self, step: int, axes: int) -> Floats:
+        """Return the values of a step to examine, (N,), without those known to be missing."""
+        places = examined(self.variable, axes)
+        parts = [read_step(self.variable, step, at, axes=axes).ravel() for at in places]
+        flat = np.concatenate(parts)
+        if self.valid is None:
+            return flat
+        return flat[~((flat < self.valid[0]) | (flat > self.valid[1]))]
+
+    def _late_fills(self, step: int, axes: int) -> tuple[float, ...]:
+        if self.fills is None:
+            return ()
+        if step not in self.late_fills:
+            self.late_fills[step] = undeclared_fills(self.sample(step, axes), self.fills)
+        return self.late_fills[step]
+
 
 def checked_component(
-    array: xr.DataArray, factor: float, axes: int, wanted: Any, record: Record
+    array: xr.DataArray,
+    factor: float,
+    axes: int,
+    wanted: Any,
+    record: Record,
+    *,
+    limits: tuple[float, float] | None = None,
 ) -> Component:
-    """Return a component without values that are no data, as its first step and attributes tell."""
-    part = Component(array.variable, factor, valid_range(array))
+    """Return a component without values that are no data, as its steps and attributes tell.
+
+    Values outside the ``limits`` are codes, if no attribute declares a range.
+    """
+    part = Component(array.variable, factor, valid_range(array) or limits)
     sample = [read_step(part.variable, 0, at, axes=axes) for at in examined(array, axes)]
     flat = np.concatenate([values.ravel() for values in sample])
     if unknown := np.isnan(flat).mean():
@@ -100,16 +128,30 @@ def checked_component(
         if outside.any():
             ends = f"{part.valid[0]:.6g} to {part.valid[1]:.6g}"
             record("mask", f"{outside.mean():.0%} of {array.name} masked: outside {ends}")
-        flat = flat[~outside]
-    fill = None if wanted is False else undeclared_fill(flat)
-    if fill is not None:
-        text = f"{np.mean(flat == fill):.0%} of {array.name} masked: {fill:g}, which is far from "
-        text += "all other values, is taken as missing; mask=False draws it"
-        record("mask", text, notable=True)
-    return replace(part, fill=fill)
+    if wanted is False:
+        return replace(part, fills=None)
+    fills: tuple[float, ...] = ()
+    steps = steps_to_examine(array.variable, axes)
+    for step in steps:
+        values = part.sample(step, axes)
+        found = undeclared_fills(values, fills)
+        fills += found
+        for fill in found:
+            text = f"{np.mean(values == fill):.0%} of {array.name} masked"
+            text += f" at step {step}" if step else ""
+            text += f": {fill:g}, which is far from all other values, is taken as missing; "
+            record("mask", f"{text}mask=False draws it", notable=True)
+    return replace(part, fills=fills, late_fills=dict.fromkeys(steps, ()))
 
 
-def examined(array: xr.DataArray, axes: int) -> list[Any]:
+def steps_to_examine(variable: xr.Variable, axes: int) -> list[int]:
+    """Return the steps of a variable that are examined; the first one of a task graph."""
+    if variable.ndim == axes or variable.chunks is not None:
+        return [0]
+    return examined_steps(variable.shape[0], int(np.prod(variable.shape[1:])))
+
+
+def examined(array: xr.DataArray | xr.Variable, axes: int) -> list[Any]:
     """Return rows and columns of a step to examine: all, or nine parts of a large one."""
     shape = array.shape[-axes:]
     if axes == 1 or np.prod(shape, dtype=float) <= MOST_EXAMINED:
@@ -145,6 +187,8 @@ class Values:
         if self.kind in (FROM, TOWARDS):
             size = u if self.kind == TOWARDS else -u
             u, v = size * np.sin(v), size * np.cos(v)
+        elif self.kind == ANGLE:
+            u, v = u * np.cos(v), u * np.sin(v)
         elif self.kind == POLAR and self.angle is not None:
             cos, sin = np.cos(self.angle), np.sin(self.angle)
             u, v = u * cos - v * sin, u * sin + v * cos

@@ -25,7 +25,7 @@ from flowtex.sources.datasets import axes, labels
 from flowtex.sources.datasets.align import align, common
 from flowtex.sources.datasets.coordinates import LATITUDE, LONGITUDE
 from flowtex.sources.datasets.levels import is_pressure
-from flowtex.sources.datasets.select import two_names, variable, velocity_unit
+from flowtex.sources.datasets.select import are_partners, two_names, variable, velocity_unit
 from flowtex.sources.datasets.values import Component, checked_component, numbers_in, read_step
 from flowtex.sources.notices import Record
 
@@ -35,18 +35,24 @@ if TYPE_CHECKING:
 #: Names, and words of standard names, of vertical velocities.
 NAMES = re.compile(r"^(w|wo|wa|wap|omega|w_?vel|vvel|vovecrtz|w_velocity)$", re.I)
 LONGEST_NAME = 40  #: Longest name that fits beside a colour bar.
+HORIZONTAL = re.compile(r"eastward|northward|zonal|meridional|[xy]_(velocity|stress)", re.I)
 WORDS = re.compile(r"upward|downward|vertical|tendency_of_air_pressure")
 
 
 def is_vertical(array: xr.DataArray) -> bool:
     """Return whether a variable is a vertical velocity, by its names."""
-    words = str(array.attrs.get("standard_name", ""))
-    return bool(WORDS.search(words) or (not words and NAMES.match(str(array.name))))
+    texts = [str(array.attrs.get(name, "")) for name in ("standard_name", "long_name")]
+    if any(map(HORIZONTAL.search, texts)):
+        return False
+    if texts[0]:
+        return WORDS.search(texts[0]) is not None
+    return NAMES.match(str(array.name)) is not None
 
 
-def is_section(datasets: Sequence[xr.Dataset], v: str) -> bool:
+def is_section(datasets: Sequence[xr.Dataset], u: str, v: str) -> bool:
     """Return whether named components lie in a vertical section, not in a plane without units."""
-    if not is_vertical(array := variable(datasets, v)):
+    array = variable(datasets, v)
+    if not is_vertical(array) or are_partners(u, v):
         return False
     named = [c for c in array.coords.values() if c.dims and c.attrs.get("units")]
     return bool(named) or "standard_name" in array.attrs
