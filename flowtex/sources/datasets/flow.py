@@ -275,7 +275,8 @@ class Flow:
 
 def read_flow(data: Any, options: FieldOptions, record: Record) -> Flow:
     """Find the velocity of a dataset, its grid and its places; a FieldError has the remedy."""
-    datasets, choice = as_datasets(data, record), Choice.of(options)
+    choice = Choice.of(options)
+    datasets = as_datasets(data, record, {*choice.sel, *choice.isel})
     pair = select.choose_pair(datasets, *select.two_names(options.vectors))
     joined = join_faces(datasets, pair, {*choice.sel, *choice.isel}, options.components)
     if joined is not None:

@@ -19,6 +19,7 @@ import numpy as np
 from flowtex._util.arguments import near_names
 from flowtex._util.array_types import AnyArray, Bools, Floats, Indices
 from flowtex.errors import FieldError
+from flowtex.field.derived import is_velocity
 from flowtex.sources.datasets.masks import undeclared_fill
 from flowtex.sources.notices import Record
 
@@ -187,6 +188,15 @@ def select_velocity(mesh: pv.DataSet, vectors: Any, record: Record) -> MeshArray
 def _found(mesh: pv.DataSet, known: str, record: Record) -> MeshArray:
     """Return the only velocity, or the one that the mesh marks or a name identifies."""
     arrays = candidates(mesh)
+    if not any(is_velocity(a.name) for a in arrays):
+        # Such as u, v and w beside a vorticity.
+        single = [a for a in _component_vectors(mesh) if is_velocity(a.name)]
+        if len(single) == 1 and single[0] not in arrays:
+            others = ", ".join(map(str, arrays))
+            text = f"made of single arrays; other vectors: {others}. Choose one of them as in "
+            text = f'the velocity is "{single[0].name}", {text}vectors="{arrays[0].name}"'
+            record("select", text, notable=True)
+            return single[0]
     active = mesh.active_vectors_name
     # VTK's PLOT3D reader marks the momentum automatically: that is no choice.
     if active == "Momentum" and any(a.name == "Velocity" for a in arrays):

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import re
 import warnings
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Container, Iterable, Sequence
 from contextlib import suppress
 from importlib.util import find_spec
 from pathlib import Path
@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from flowtex._util.arguments import brief, checked_source
+from flowtex._util.array_types import AnyArray
 from flowtex.errors import FieldError, import_extra, import_package
 from flowtex.field import units
 from flowtex.sources.datasets import labels
@@ -23,13 +24,22 @@ from flowtex.sources.inspection.inspect_file import NETCDF, inspect_file
 from flowtex.sources.models.conventions import with_mesh_axes
 from flowtex.sources.notices import NOTE, Record
 from flowtex.sources.opening import component_axes, flow_text, tables
+from flowtex.sources.opening.column_values import plain_values
 from flowtex.sources.reader_errors import check_memory
 
 if TYPE_CHECKING:
     import xarray as xr
 
+#: Names of axes along which later versions follow earlier ones.
+VERSIONS = re.compile(r"^(exp_?ver\w*|(\w+_)?versions?)$", re.IGNORECASE)
 #: Names of dates as text, which some models write beside less exact times, or instead of them.
 LETTERS = ("Times", "xtime")
+#: Dates of eight to fourteen digits.
+DIGITS = re.compile(
+    r"(1[5-9]\d\d|2[0-2]\d\d)(0[1-9]|1[0-2])([0-2]\d|3[01])[T_ ]?(\d\d)?(\d\d)?(\d\d)?Z?"
+)
+#: Texts of five and more digits, and numbers, that are no dates.
+NUMBER = re.compile(r"[-+]?(\d{5,}|\d{1,3})(\.\d*)?")
 #: A unit of time of ICON: a date, with the share of the day behind its point.
 DAYS_AS_NUMBERS = "%Y%m%d"
 GRIB = (".grib", ".grb", ".grib2", ".grb2")
@@ -66,29 +76,50 @@ class Datasets(list["xr.Dataset"]):
             close()
 
 
-def as_datasets(data: Any, record: Record | None = None) -> Datasets:
-    """Return datasets with recognised axes: series and regions joined, and of a tree one group."""
+def as_datasets(data: Any, record: Record | None = None, chosen: Container[str] = ()) -> Datasets:
+    """Return datasets with recognised axes: series and regions joined, and of a tree one group.
+
+    Versions are joined as well, unless one of them is among the ``chosen`` axes.
+    """
     if isinstance(data, Datasets) and data.recognised:
         return data
     xarray, record = import_extra("xarray", "xarray"), record or Record()
     result = []
     for ds in data if isinstance(data, (list, tuple)) else [data]:
         several = isinstance(data, (list, tuple)) and len(data) > 1
-        part = (
-            of_tree(ds)
-            if isinstance(ds, xarray.DataTree)
-            else tables.as_dataset(ds, several=several)
-        )
-        note = part.encoding.get(NOTE)
-        if note:
-            record("select", note, notable=True)
-        result.append(component_axes.split_components(_decoded(part)))
+        if isinstance(ds, xarray.DataTree):
+            parts = of_tree(ds)
+        else:
+            parts = [tables.as_dataset(ds, several=several)]
+        for part in parts:
+            note = part.encoding.get(NOTE)
+            if note:
+                record("select", note, notable=True)
+            whole = _one_version(_decoded(part), chosen, record)
+            result.append(component_axes.split_components(whole))
     groups: dict[frozenset[Any], list[xr.Dataset]] = {}
     for ds in result:
         groups.setdefault(frozenset(ds.data_vars), []).append(ds)
     result = [ds for group in groups.values() for ds in _together(group, record)]
     closers = data.closers if isinstance(data, Datasets) else ()
     return Datasets(with_mesh_axes([_with_axes(ds) for ds in result]), closers, recognised=True)
+
+
+def _one_version(ds: xr.Dataset, chosen: Container[str], record: Record) -> xr.Dataset:
+    """Return a dataset in which later versions fill what the first one lacks, as of ERA5."""
+    dim = next((str(d) for d in ds.dims if VERSIONS.match(str(d)) and d not in chosen), "")
+    if not dim:
+        return ds
+    count = ds.sizes[dim]
+    names = ", ".join(map(str, ds[dim].values)) if dim in ds.coords else f"{count} versions"
+    if "source" in ds.encoding and find_spec("dask") is not None:  # otherwise all of it is read
+        ds = ds.chunk({d: 1 for d in ds.dims if TIMES.match(str(d))})
+    with import_extra("xarray", "xarray").set_options(keep_attrs=True):
+        whole: xr.Dataset = ds.isel({dim: 0}, drop=True)
+        for number in range(1, count):
+            whole = whole.fillna(ds.isel({dim: number}, drop=True))
+    record("select", f"{dim}: {names} are joined, each where those before it lack data")
+    return whole.assign_attrs(ds.attrs)
 
 
 def _together(group: list[xr.Dataset], record: Record) -> list[xr.Dataset]:
@@ -123,19 +154,42 @@ def _apart(group: list[xr.Dataset], record: Record) -> list[xr.Dataset]:
     return group
 
 
-def of_tree(tree: xr.DataTree, file: Path | None = None) -> xr.Dataset:
-    """Return the dataset of the one group of a tree (of a file) with a velocity, or of its root."""
+def of_tree(tree: xr.DataTree, file: Path | None = None) -> list[xr.Dataset]:
+    """Return the one group of a tree (of a file) with a velocity, or its root.
+
+    Where no group has both components, all groups with variables are returned.
+    """
     parts = {node.path: node.to_dataset() for node in tree.subtree}
     groups = [path for path, ds in parts.items() if find_pairs([ds])]
     if len(groups) > 1 and groups[0] != tree.path:
         listed = ", ".join(groups)
         example = f"tree[{groups[0]!r}]" if file is None else repr(f"{file}{groups[0]}")
         raise FieldError(f"the groups {listed} have a velocity; give one, as in {example}")
-    return parts[groups[0] if groups else tree.path]
+    if groups:
+        return [parts[groups[0]]]
+    filled = [ds for ds in parts.values() if ds.data_vars]
+    if find_pairs(filled):
+        return filled
+    return [parts[tree.path]]
+
+
+def _plain(ds: xr.Dataset) -> xr.Dataset:
+    """Return a dataset of NumPy's types; dates with a zone are in UTC."""
+    own = [str(n) for n, a in ds.variables.items() if not isinstance(a.dtype, np.dtype)]
+    if not own:
+        return ds
+    plain = {}
+    for name in own:
+        variable = ds.variables[name]
+        values = plain_values(variable.to_index() if variable.ndim == 1 else variable.data)
+        plain[name] = (variable.dims, np.reshape(values, variable.shape), variable.attrs)
+    coordinates = {name: plain.pop(name) for name in own if name in ds.coords}
+    return ds.drop_vars(own).assign_coords(coordinates).assign(plain)
 
 
 def _decoded(ds: xr.Dataset) -> xr.Dataset:
     """Return a dataset with ``Unit``, ``Units`` and ``unit`` as units, and times as dates."""
+    ds = _plain(ds)
     named = {
         name: value
         for name, variable in ds.variables.items()
@@ -165,12 +219,15 @@ def _dated(ds: xr.Dataset) -> xr.Dataset:
         texts = [
             (row.decode() if isinstance(row, bytes) else str(row)).strip(" \0") for row in rows
         ]
-        try:
-            dates = np.array([t.replace("_", "T").rstrip("Z") for t in texts], "datetime64[ms]")
-        except ValueError:
-            continue
-        if ds.sizes[dim] == len(dates):
-            return ds.assign_coords({dim: (dim, dates.astype("datetime64[ns]"), {"axis": "T"})})
+        dates = _dates_of(texts)
+        if dates is not None and ds.sizes[dim] == len(dates):
+            return ds.assign_coords({dim: (dim, dates, {"axis": "T"})})
+    for name, c in ds.coords.items():  # such as 20240130
+        bare = c.dims == (name,) and c.dtype.kind in "iu" and "units" not in c.attrs
+        if bare and TIMES.match(str(name)):
+            dates = _dates_of([str(number) for number in c.values.tolist()], digits=True)
+            if dates is not None:
+                return ds.assign_coords({name: (name, dates, {"axis": "T"})})
     for axis in ds.dims:
         line = ds.variables.get(axis)
         if line is not None and DAYS_AS_NUMBERS in str(line.attrs.get("units", "")):
@@ -180,6 +237,29 @@ def _dated(ds: xr.Dataset) -> xr.Dataset:
             times = (dates.astype("datetime64[s]") + seconds).astype("datetime64[ns]")
             return ds.assign_coords({axis: (axis, times, {"axis": "T"})})
     return ds
+
+
+def _dates_of(texts: list[str], *, digits: bool = False) -> AnyArray | None:
+    """Return the dates of texts, (N,), of zones in UTC; ``None`` if one is no date.
+
+    With ``digits`` only those of eight to fourteen digits are dates.
+    """
+    forms = []
+    for text in texts:
+        found = DIGITS.fullmatch(text)
+        if found is None and (digits or NUMBER.fullmatch(text)):
+            return None
+        if found is None:
+            forms.append(text.replace("_", "T"))
+            continue
+        clock = [part or "00" for part in found.groups()[3:]]
+        forms.append("-".join(found.groups()[:3]) + "T" + ":".join(clock))
+    pandas = import_extra("pandas", "xarray")
+    try:
+        dates = pandas.to_datetime(forms, utc=True, format="ISO8601")
+    except (ValueError, OverflowError):
+        return None
+    return np.asarray(dates.tz_localize(None), dtype="datetime64[ns]")
 
 
 def _with_axes(ds: xr.Dataset) -> xr.Dataset:
@@ -357,8 +437,8 @@ def open_files(path: Path) -> Datasets:
         if group and f"/{group}" not in tree.groups:
             groups = ", ".join(tree.groups[1:]) or "none: there are no groups"
             raise FieldError(f"the group {group!r} does not exist; expected {groups}")
-        part = of_tree(tree[group] if group else tree, path)
-        return Datasets([part], _closers([ds, *tree.subtree]))
+        parts = of_tree(tree[group] if group else tree, path)
+        return Datasets(parts, _closers([ds, *tree.subtree]))
 
 
 def _selafin(path: Path) -> xr.Dataset:

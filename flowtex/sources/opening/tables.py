@@ -11,6 +11,7 @@ of records, each with ``header`` (``nx``, ``ny``, ``lo1``, ``la1``, ``dx``, ``dy
 from __future__ import annotations
 
 import csv
+import io
 import json
 import os
 import re
@@ -22,11 +23,13 @@ from typing import TYPE_CHECKING, Any, TextIO
 import numpy as np
 
 from flowtex._util.array_types import AnyArray
+from flowtex._util.whole_file import TemporaryFolder
 from flowtex.errors import FieldError, import_extra
 from flowtex.sources.datasets import is_dataset
 from flowtex.sources.datasets.coordinates import LATITUDE, LONGITUDE
 from flowtex.sources.opening import component_axes
 from flowtex.sources.opening.column_names import component_names, split_unit
+from flowtex.sources.opening.column_values import column_numbers, without_units
 from flowtex.sources.reader_errors import check_count, check_memory
 
 if TYPE_CHECKING:
@@ -59,12 +62,25 @@ def as_dataset(item: Any, *, several: bool) -> xr.Dataset:
         return item
     if isinstance(item, xarray.DataArray):
         return component_axes.of_array(item, several=several)
+    if isinstance(item, io.StringIO):
+        return _read_text(item)
     if is_dataset(item):
         return of_table(item)
     raise FieldError(
         f"data has type {type(item).__name__}; expected an xarray Dataset, DataTree or DataArray, "
         "a pandas DataFrame, or a list of them"
     )
+
+
+def _read_text(stream: io.StringIO) -> xr.Dataset:
+    """Read columns as those of a file."""
+    temporary = TemporaryFolder()
+    try:
+        path = temporary.new_folder() / "table.csv"
+        path.write_text(stream.getvalue(), encoding="utf-8")
+        return read_csv(path)
+    finally:
+        temporary.close()
 
 
 def of_table(table: Any) -> xr.Dataset:
@@ -125,7 +141,10 @@ def _plain(table: Any) -> tuple[Any, dict[str, dict[str, str]]]:
         columns[column] = changes.get(name, name)
         if unit:
             attributes[columns[column]] = {"units": unit}
-    return frame.rename(columns=columns), attributes
+    frame, units = without_units(frame.rename(columns=columns))
+    attributes = {**{name: {"units": unit} for name, unit in units.items()}, **attributes}
+    numbers = {name: column_numbers(frame[name]) for name in frame if frame.columns.is_unique}
+    return frame.assign(**numbers), attributes
 
 
 def _pair(
