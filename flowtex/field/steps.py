@@ -41,8 +41,8 @@ class LazySteps:
         self._shape: tuple[int, ...] | None = None
 
     def __reduce__(self) -> tuple[Any, ...]:
-        options = {"kept": self._most, "quick": self.quick}
-        return partial(LazySteps, **options), (self._count, self._read)
+        make = partial(LazySteps, kept=self._most, quick=self.quick)
+        return make, (self._count, self._read)
 
     def __deepcopy__(self, memo: Any) -> LazySteps:
         return self

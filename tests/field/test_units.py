@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from flowtex import FlowField
+from flowtex.field import units
 from flowtex.field.steps import LazySteps
 from flowtex.scene.scene import Scene
 from flowtex.trace.slices import typical_speed
@@ -86,3 +87,28 @@ def test_lazy_steps_stay_lazy() -> None:
     assert isinstance(field.speed, LazySteps)
     assert field.speed[4].max() == pytest.approx(5 * 0.15 * np.hypot(20, 10))
     assert set(read) == {0, 4}
+
+
+@pytest.mark.parametrize(
+    ("text", "usual"),
+    [
+        ("mb", "hPa"),
+        ("hpa", "hPa"),
+        ("Pascals", "Pa"),
+        ("Meters", "m"),
+        ("Days", "day"),
+        ("ms-1", "m/s"),
+        ("cm s\u22121", "cm/s"),
+        ("m s -1", "m/s"),
+        ("[m/s]", "m/s"),
+        ("M/S", "m/s"),
+        ("KT", "knot"),
+        ("kmh", "km/h"),
+    ],
+)
+def test_usual_spellings_of_units_are_read(text: str, usual: str) -> None:
+    assert units.factor(text, usual) == pytest.approx(1.0)
+
+
+def test_milliseconds_stay_milliseconds() -> None:
+    assert units.factor("ms", "s") == pytest.approx(1e-3)

@@ -45,7 +45,6 @@ from flowtex.sources.datasets.axes import (
     choose,
     coordinate_of,
     horizontal_dims,
-    is_dates,
 )
 from flowtex.sources.datasets.coordinates import LATITUDE, LONGITUDE, Beside, Places, ordered
 from flowtex.sources.datasets.masks import Mask, find_masks, is_constant, moves_over_land
@@ -323,11 +322,8 @@ def _check_surface(pair: Pair) -> None:
     if LEVEL not in kinds.values() or len(kinds) < 2 or is_vertical(v):
         return
     level, other = sorted(kinds, key=lambda dim: kinds[dim] != LEVEL)
-    if kinds[other] == TIME and is_dates(u.coords[other]):
-        raise FieldError(
-            f"{u.name} and {v.name} vary along {other} and {level}, a section in time, along which "
-            "nothing flows; draw arrows with matplotlib, as in ax.quiver or ax.barbs"
-        )
+    if kinds[other] == TIME:
+        return
     on_earth = LONGITUDE.match(other) or LATITUDE.match(other)
     if on_earth or (pair.along == "earth" and coordinate_of(u, other) is not None):
         along = u.name if LONGITUDE.match(other) else v.name
@@ -459,7 +455,7 @@ def _applied(flow: Flow, mask: Mask, part: xr.DataArray, wanted: Any) -> Mask | 
         if not flow.staggered:
             u = flow.values.components[0].read(moving, at, axes=axes)
         elif at is None:
-            bad = flow.values.at_cells(bad)
+            bad = flow.values.at_cells(bad.astype(float)) > 0
             u = flow.values.read(moving)[0]
         else:
             u = np.full(bad.shape, np.nan)

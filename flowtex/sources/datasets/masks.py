@@ -173,7 +173,7 @@ def declared_numbers(array: xr.DataArray, name: str) -> list[float]:
     if given is None:
         return []
     if isinstance(given, str):
-        given = re.sub(r"[\[\](),;]|(?<=\d)[bsfd]\b", " ", given).split()
+        given = re.sub(r"[\[\](),;]|(?<=[\d.])[bsfd]\b", " ", given).split()
     try:
         return [float(number) for number in np.ravel(given)]
     except (TypeError, ValueError) as error:

@@ -59,6 +59,8 @@ OF_GRIDS = re.compile(
     re.I,
 )
 
+#: Share of nodes without data at some times from which on a notice is issued.
+NOTABLE_GAPS = 0.01
 #: Steps of a series among which the first one that moves is searched.
 MOST_SEARCHED = 200
 
@@ -178,8 +180,9 @@ def _note_gaps(read: LazySteps, flow: Flow) -> None:
     lacking = ever & ~always
     if lacking.any():
         first = next(n for n, here in zip(steps, known, strict=True) if (ever & ~here).any())
-        text = f"{lacking.mean():.0%} of the nodes lack data at some times, such as step {first}; "
-        flow.record("mask", f"{text}nothing flows there then", notable=True)
+        text = f"{lacking.sum():,} of {lacking.size:,} nodes lack data at some times, such as step "
+        notable = lacking.mean() >= NOTABLE_GAPS
+        flow.record("mask", f"{text}{first}, when they are drawn without streaks", notable=notable)
 
 
 def _averaged(

@@ -30,6 +30,8 @@ if TYPE_CHECKING:
 REPEATED = 0.01
 #: Offset in cells up to which two grids coincide.
 SAME_NODE = 0.03
+#: Names of dimensions in the middle of cells.
+MIDDLE_DIM = re.compile(r"_(rho|t|c|center)$")
 #: Difference from half a cell up to which an offset is half a cell.
 HALF = 0.1
 
@@ -110,6 +112,8 @@ def find_grid(u: xr.DataArray, v: xr.DataArray, beside: Beside, *, along_earth: 
         count = u.sizes[dims[0][1]]
         columns = Sides.counted(-1, count, count, wraps=_wraps(nemo))
         return _staggered(u, v, nemo, (rows, columns), record)
+    if dims[0] != dims[1]:
+        _check_sides(u, v)
     own = _source(u, datasets)
     apart = own is not _source(v, datasets)
     alike = u.sizes[dims[0][0]] == v.sizes[dims[1][0]] and u.shape == v.shape
@@ -274,6 +278,21 @@ def _own_places(array: xr.DataArray, beside: Beside) -> Places | None:
 
 def _source(array: xr.DataArray, datasets: Sequence[xr.Dataset]) -> xr.Dataset:
     return next((ds for ds in datasets if array.name in ds.variables), datasets[0])
+
+
+def _check_sides(u: xr.DataArray, v: xr.DataArray) -> None:
+    """Raise if names such as eta_psi say that u lies on sides along a column, and v along a row."""
+    (row_u, column_u), (row_v, column_v) = horizontal_dims(u), horizontal_dims(v)
+    in_middle = all(map(MIDDLE_DIM.search, (column_u, row_v)))
+    if not in_middle or any(map(MIDDLE_DIM.search, (row_u, column_v))):
+        return
+    changes = {row_v: column_u, column_u: row_v, row_u: column_v, column_v: row_u}
+    words = ", ".join(f'{one}="{other}"' for one, other in changes.items())
+    raise FieldError(
+        f"{u.name} on ({row_u}, {column_u}) lies on the sides along {row_u}, and {v.name} on "
+        f"({row_v}, {column_v}) on those along {column_v}, so {u.name} is not along {column_u}. "
+        f"Exchange the names of the dimensions, as in ds.rename({words})"
+    )
 
 
 def _by_names(u: xr.DataArray, v: xr.DataArray, cells: tuple[str, str], beside: Beside) -> Grid:

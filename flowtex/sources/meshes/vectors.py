@@ -192,8 +192,8 @@ def _found(mesh: pv.DataSet, known: str, record: Record) -> MeshArray:
         # Such as u, v and w beside a vorticity.
         single = [a for a in _component_vectors(mesh) if is_velocity(a.name)]
         if len(single) == 1 and single[0] not in arrays:
-            others = ", ".join(map(str, arrays))
-            text = f"made of single arrays; other vectors: {others}. Choose one of them as in "
+            listed = ", ".join(map(str, arrays))
+            text = f"made of single arrays; other vectors: {listed}. Choose one of them as in "
             text = f'the velocity is "{single[0].name}", {text}vectors="{arrays[0].name}"'
             record("select", text, notable=True)
             return single[0]

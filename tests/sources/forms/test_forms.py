@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
+import declared_forms
 import grid_forms
 import label_forms
 import mesh_forms
@@ -20,7 +21,15 @@ from flowtex import FlowField
 from flowtex.errors import FieldError
 
 pytest.importorskip("pyproj")
-MODULES = (grid_forms, label_forms, mesh_forms, time_forms, turned_forms, value_forms)
+MODULES = (
+    declared_forms,
+    grid_forms,
+    label_forms,
+    mesh_forms,
+    time_forms,
+    turned_forms,
+    value_forms,
+)
 
 
 @pytest.mark.parametrize("name", FORMS)

@@ -166,3 +166,13 @@ def test_components_of_a_file(tmp_path: Path) -> None:
         ("Velocity", "points", 3, NAMES)
     ]
     assert joined[0].high == pytest.approx(np.sqrt(14))
+
+
+def test_single_components_come_before_a_vorticity() -> None:
+    mesh = pv.Plane(i_resolution=4, j_resolution=3)
+    for name, value in zip("uvw", (1.0, 2.0, 0.0), strict=True):
+        mesh[name] = np.full(mesh.n_points, value)
+    mesh["vorticity"] = np.tile([0.0, 0.0, 5.0], (mesh.n_points, 1))
+    with pytest.warns(UserWarning, match='vectors="vorticity"'):
+        field = FlowField.from_pyvista(mesh)
+    assert np.allclose(field.velocity[0], (1, 2, 0))
