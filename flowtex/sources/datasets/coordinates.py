@@ -117,6 +117,32 @@ def find_places(
     """
     datasets, drawn, _ = beside
     shape = tuple(_size(d, array, datasets) for d in dims)
+    found = _on_earth(array, dims, shape, beside)
+    if found is not None:
+        return found
+    for x, y in _pairs(array, dims, datasets, {"X": ACROSS, "Y": UPWARD}):
+        if (at := _at_nodes(x, y, dims, shape, drawn)) is not None:
+            return _plane(x, y, *at, _mapping(array, datasets))
+    cells = _even_cells(array, dims, shape, datasets)
+    if cells is not None:
+        return cells
+    lines = [_own_line(array, d, datasets) for d in dims]
+    if any_axes and lines[0] is not None and lines[1] is not None:
+        return _of_lines(lines[1], lines[0])
+    _check_two_of_space(array, dims)
+    names = sorted({str(n) for n in array.coords} | {str(n) for ds in datasets for n in ds.coords})
+    raise FieldError(
+        f"{array.name!r} with the dimensions {', '.join(dims)} has no positions; the coordinates "
+        f"are {', '.join(names) or 'none'}. Open the file that has them together with this one, "
+        f"or add them, as in ds.assign_coords({dims[0]}=..., {dims[1]}=...)"
+    )
+
+
+def _on_earth(
+    array: xr.DataArray, dims: tuple[str, ...], shape: tuple[int, ...], beside: Beside
+) -> Places | None:
+    """Return places by longitude and latitude; ``None`` without these."""
+    datasets, drawn, _ = beside
     found: Places | None = None
     for lon, lat in _pairs(array, dims, datasets, {"longitude": LONGITUDE, "latitude": LATITUDE}):
         if found is not None and lon.ndim > 1:
@@ -141,23 +167,7 @@ def find_places(
                 break
         elif is_line and places.is_near(found):
             return places
-    if found is not None:
-        return found
-    for x, y in _pairs(array, dims, datasets, {"X": ACROSS, "Y": UPWARD}):
-        if (at := _at_nodes(x, y, dims, shape, drawn)) is not None:
-            return _plane(x, y, *at, _mapping(array, datasets))
-    if (cells := _even_cells(array, dims, shape, datasets)) is not None:
-        return cells
-    lines = [_own_line(array, d, datasets) for d in dims]
-    if any_axes and lines[0] is not None and lines[1] is not None:
-        return _of_lines(lines[1], lines[0])
-    _check_two_of_space(array, dims)
-    names = sorted({str(n) for n in array.coords} | {str(n) for ds in datasets for n in ds.coords})
-    raise FieldError(
-        f"{array.name!r} with the dimensions {', '.join(dims)} has no positions; the coordinates "
-        f"are {', '.join(names) or 'none'}. Open the file that has them together with this one, "
-        f"or add them, as in ds.assign_coords({dims[0]}=..., {dims[1]}=...)"
-    )
+    return found
 
 
 def _check_two_of_space(array: xr.DataArray, dims: tuple[str, ...]) -> None:

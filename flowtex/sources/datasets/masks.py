@@ -168,7 +168,10 @@ def is_constant(values: Floats) -> bool:
 
 
 def declared_numbers(array: xr.DataArray, name: str) -> list[float]:
-    """Return the numbers of an attribute, which may be text or a list; empty without it."""
+    """Return the numbers of an attribute, which may be text or a list; empty without it.
+
+    Raises a FieldError for anything else.
+    """
     given = array.attrs.get(name)
     if given is None:
         return []
@@ -184,7 +187,10 @@ def declared_numbers(array: xr.DataArray, name: str) -> list[float]:
 
 
 def valid_range(array: xr.DataArray) -> tuple[float, float] | None:
-    """Return the least and greatest valid value of a variable that xarray has unpacked."""
+    """Return the least and greatest valid value of a variable that xarray has unpacked.
+
+    Raises a FieldError for attributes that are no numbers, or not as many as expected.
+    """
     encoding = array.encoding
     low, high = -np.inf, np.inf
     whole = True

@@ -95,15 +95,7 @@ def read_datasets(
                 "longitude and latitude; omit projection"
             )
         scalars = _scalars(flow)
-        caption = ", ".join(filter(None, (name, record.reading.caption)))
-        units_of, names = (
-            {key: str(s.array.attrs[word]) for key, s in scalars.items() if s.array.attrs.get(word)}
-            for word in ("units", "long_name")
-        )
-        names = {key: text for key, text in names.items() if len(text) <= LONGEST_NAME}
-        if not flow.is_velocity:
-            names["speed"] = magnitude_label(flow.name, flow.unit)
-        words: dict[str, Any] = {"name": caption, "units": units_of, "long_names": names}
+        words = _words(flow, scalars, name)
         by_regions = regions and flow.mesh is None and spread is None
         arrays: GridArrays | TriangleArrays | Regions | None
         arrays = _regions(flow, scalars, projection, words) if by_regions else None
@@ -111,6 +103,19 @@ def read_datasets(
     record.notify()
     datasets.close()
     return arrays
+
+
+def _words(flow: Flow, scalars: Mapping[str, _Scalar], name: str) -> dict[str, Any]:
+    """Return the caption of a field, and units and long names of its scalars and its speed."""
+    caption = ", ".join(filter(None, (name, flow.record.reading.caption)))
+    units_of, names = (
+        {key: str(s.array.attrs[word]) for key, s in scalars.items() if s.array.attrs.get(word)}
+        for word in ("units", "long_name")
+    )
+    names = {key: text for key, text in names.items() if len(text) <= LONGEST_NAME}
+    if not flow.is_velocity:
+        names["speed"] = magnitude_label(flow.name, flow.unit)
+    return {"name": caption, "units": units_of, "long_names": names}
 
 
 def _whole(
