@@ -60,10 +60,9 @@ def rgb(colour: Any) -> tuple[float, float, float]:
         # A text such as "0.5" is a grey to matplotlib, and no colour to PyVista.
         if is_color_like(colour) and not colour.replace(".", "", 1).isdecimal():
             return to_rgb(colour)
+    shares: AnyArray = np.empty(0)
     if isinstance(colour, tuple):
         shares = np.asarray(colour)
-    else:
-        shares = np.empty(0)
     if shares.shape == (3,) and shares.dtype == float and ((shares >= 0) & (shares <= 1)).all():
         red, green, blue = np.rint(shares * 255) / 255  # as PyVista rounds them
         return float(red), float(green), float(blue)
