@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self, cast
 
 from flowtex.errors import require_pyvista
 from flowtex.field.field_arrays import FieldArrays
 from flowtex.field.options import OF_DATASETS, OF_MESHES, FieldOptions, accepts_options
-from flowtex.field.uncertainty import with_uncertainty
+from flowtex.field.uncertainty import UNCERTAINTY, with_uncertainty
+from flowtex.field.validation import with_gaps
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -278,8 +280,16 @@ class FieldConstructors:
         coordinates: longitude and latitude
         components: eastward and northward (by the names of the variables)
         """
+        from flowtex.sources.datasets.own_values import with_values
         from flowtex.sources.datasets.read_datasets import read_datasets
 
         options = FieldOptions.of_dataset({"u": u, "v": v, **selection})
+        uncertainty: Any = options.uncertainty
+        if uncertainty is not None and not isinstance(uncertainty, str):
+            values = with_gaps("uncertainty", uncertainty)
+            changed = with_values(data, UNCERTAINTY, values, "uncertainty", options.vectors)
+            if changed is not data:
+                data = changed
+                options = replace(options, uncertainty=UNCERTAINTY)
         field = cls.of(cast("FieldArrays", read_datasets(data, options, name=name)))
         return with_uncertainty(field, options.uncertainty)

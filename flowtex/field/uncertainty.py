@@ -66,21 +66,24 @@ def with_uncertainty(field: Field, value: Any) -> Field:
 
 def nodal_steps(field: Any, value: Any, name: str, other: str = "") -> Floats:
     """Return an array of an argument as nodal values of a field, (T or 1, J, I)."""
+    nodes = int(np.prod(field.shape))
+    shapes: set[tuple[int, ...]] = {field.shape, (nodes,)}
+    for count in (1, len(field.times)):
+        shapes |= {(count, *field.shape), (count, nodes)}
     try:
         array = np.asarray(value, dtype=float)
-        steps = array.reshape(-1, *field.shape)
     except (TypeError, ValueError):
-        steps = None
-    if steps is None or len(steps) not in {1, len(field.times)}:
-        if not isinstance(value, (bool, dict)):
-            shape = np.shape(value)
-        else:
+        array = np.empty(0)
+    # Another shape with as many values, such as one with exchanged axes, is no order of the nodes.
+    if array.shape not in shapes:
+        shape: Any = np.shape(value)
+        if isinstance(value, (bool, dict)):
             shape = repr(value)
         raise FieldError(
             f"{name} is {shape}; expected {other}an array of the shape {field.shape}, or "
             f"{(len(field.times), *field.shape)}"
         )
-    return steps
+    return array.reshape(-1, *field.shape)
 
 
 def _at_nodes(field: Any, steps: Steps) -> Steps:

@@ -23,6 +23,7 @@ from flowtex.field.steps import LazySteps
 from flowtex.field.uncertainty import nodal_steps, with_uncertainty
 from flowtex.settings import Settings
 from flowtex.sources.datasets import is_dataset
+from flowtex.sources.datasets.own_values import with_values
 from flowtex.sources.meshes.vectors import with_array
 from flowtex.sources.plain_arrays import are_labelled, is_plain, read_arrays, read_labelled
 from flowtex.textures.tiles.pyramid import Pyramid
@@ -81,8 +82,20 @@ def read_field(mesh: Any, options: FieldOptions, time: float | str | None = None
         own = {} if array is None else {DATA: array}
         field, array = read_arrays(mesh, options, own), None
     else:
+        if array is not None and is_dataset(mesh):
+            changed = with_values(mesh, DATA, array, "scalars", options.vectors)
+            if changed is not mesh:
+                mesh = changed
+                array = None
         field = _read(mesh, options, time)
     if array is not None:
+        is_file = not isinstance(mesh, FlowField) and not is_dataset(mesh)
+        if is_file and field.reading.of("coordinates"):
+            raise FieldError(
+                f"scalars is an array, but reading may change the order of the axes of {mesh}; "
+                "open the file with xarray, add the array as in ds['name'] = (dims, array), and "
+                "pass scalars='name'"
+            )
         steps = nodal_steps(field, array, "scalars", "the name of an array, or ")
         field = field.same_flow(scalars={**field.scalars, DATA: steps})
     # Datasets and files are averaged where they are read.
