@@ -232,8 +232,7 @@ def _verify(files: Sequence[Path]) -> int:
         faults = [str(error)]
     for fault in faults:
         complain(DamageError(fault))
-    if not faults:
-        say((str(files[0]), "bold"), "  is whole")
     if faults:
         return 1
+    say((str(files[0]), "bold"), "  is whole")
     return 0

@@ -79,17 +79,24 @@ class NodeSurface:
         """Diagonal of the bounding box of the valid nodes."""
         return float(np.linalg.norm(self._bounds[1] - self._bounds[0]))
 
+    @property
+    def _nodes(self) -> Floats:
+        """Positions of the valid nodes, (N, 3)."""
+        if self.valid.all():
+            return self.points.reshape(-1, 3)
+        return self.points[self.valid]
+
     @cached_property
     def _bounds(self) -> Floats:
-        return bounds(self.points if self.valid.all() else self.points[self.valid])
+        # Rows of a grid are faster to compare than single nodes.
+        if self.valid.all():
+            return bounds(self.points)
+        return bounds(self._nodes)
 
     @cached_property
     def frame(self) -> Floats | None:
         """Two orthonormal rows that span the surface where it is flat, (2, 3), else ``None``."""
-        if self.valid.all():
-            nodes = self.points.reshape(-1, 3)
-        else:
-            nodes = self.points[self.valid]
+        nodes = self._nodes
         offsets = nodes - self.center
         offsets -= offsets.mean(axis=0)  # the middle of the box need not lie in the plane
         _, _, basis = np.linalg.svd(offsets.T @ offsets)
@@ -105,10 +112,7 @@ class NodeSurface:
     def plane_size(self) -> Floats:
         """Width and height along the frame of a flat surface, (2,)."""
         assert self.frame is not None
-        if self.valid.all():
-            nodes = self.points.reshape(-1, 3)
-        else:
-            nodes = self.points[self.valid]
+        nodes = self._nodes
         # Column by column, which needs no memory for the differences to the middle.
         return np.array([np.ptp(nodes @ axis) for axis in self.frame])
 

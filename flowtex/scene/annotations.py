@@ -185,20 +185,18 @@ def write_ticks(
         for share, text in _value_marks(ColourScale(), low, high):
             if axis:
                 x = left
+                y = round(bottom - share * (bottom - top))
+                end = (x - TICK_PX, y)
+                place = (end[0] - 2, y)
+                anchor = "rm"
             else:
                 x = round(left + share * (right - left))
-            if axis:
-                y = round(bottom - share * (bottom - top))
-            else:
                 y = bottom
-            if axis:
-                end = (x - TICK_PX, y)
-            else:
                 end = (x, y + TICK_PX)
+                place = end
+                anchor = "ma"
             draw.line((x, y, *end), "grey")
-            draw.text(
-                (end[0] - 2 * axis, end[1]), text, writer.ink, writer.font, ("ma", "rm")[axis]
-            )
+            draw.text(place, text, writer.ink, writer.font, anchor)
 
 
 class _Writer:

@@ -132,11 +132,9 @@ class TriangleGeometry(DrawnSurface):
         """Return values at the vertices (3 m,) as an image of the nodes or triangles, (H, W)."""
         if on_cells:
             size = image_size(len(self.triangles))
-        else:
-            size = self.size
-        if on_cells:
             at = np.repeat(np.arange(len(self.triangles)), 3)
         else:
+            size = self.size
             at = self.triangles.ravel()
         image = np.zeros(size, values.dtype)
         image.reshape(-1)[at] = values

@@ -282,18 +282,14 @@ def _one_sided(
         for distance in (1, 2):
             number = line + side * distance
             if turn is None:
-                turns = np.zeros_like(number)
+                at = np.clip(number, 0, last)
+                exists.append(usable & (at == number) & valid[at, place])
+                values.append(data[:, at, place])
             else:
                 turns = number // last
-            if turn is None:
-                at = np.clip(number, 0, last)
-            else:
                 at = number - turns * last
-            exists.append(usable & (at == number if turn is None else True) & valid[at, place])
-            shift: Floats | float = 0.0
-            if turn is not None:
-                shift = turns * turn[:, None]
-            values.append(data[:, at, place] + shift)
+                exists.append(usable & valid[at, place])
+                values.append(data[:, at, place] + turns * turn[:, None])
         near, far = values
         first = exists[0] & ~done
         second = exists[0] & exists[1]

@@ -304,7 +304,7 @@ class FlowImage(AxesImage):
         self._projection = projection = scene.field.projection
         if is_geo(ax):
             _check_earth(scene.field)
-        if not is_geo(ax):
+        else:
             self._unit = unit_of(projection)
         surface = scene.whole.surface
         self._frame = frame = _frame(surface)

@@ -198,11 +198,9 @@ class Summing:
         speed = np.linalg.norm(base[:, :3], axis=-1)
         if self._by_lag:
             scale = np.ones(len(base))
-        else:
-            scale = base[:, 3] * self._values["u_unit"]
-        if self._by_lag:
             spacing = self._lookup.spacing * speed
         else:
+            scale = base[:, 3] * self._values["u_unit"]
             spacing = self._lookup.spacing
         sides = ((-1.0, 0), (1.0, len(self._lags)))  # and the layers before their first slices
         for sign, before in sides[: self._values["u_sides"]]:

@@ -74,13 +74,11 @@ class _Legacy:
     def _word(self) -> bytes:
         """Return the next word, empty at the end."""
         match = WORD.search(self._data, self._at)
-        if match:
-            self._at = match.end()
-        else:
+        if match is None:
             self._at = len(self._data)
-        if match:
-            return match.group()
-        return b""
+            return b""
+        self._at = match.end()
+        return match.group()
 
     def _is_next(self, beginning: bytes) -> bool:
         match = WORD.search(self._data, self._at)

@@ -306,7 +306,6 @@ def _joined(data: bytes, on_sphere: bool) -> Indices:  # noqa: FBT001
         )
     if on_sphere:
         p = p / np.linalg.norm(p, axis=1, keepdims=True)
-    if on_sphere:
         triangles = _on_sphere(p)
     else:
         triangles = _in_plane(p[:, :2])
