@@ -21,10 +21,31 @@ if TYPE_CHECKING:
 def with_values(
     data: Any, name: str, values: AnyArray, argument: str, vectors: str | None = None
 ) -> Any:
-    """Return data with an array as one more variable or column; unchanged if its shape is another.
+    """Return data with an array as one more variable or column.
 
-    The array has the axes of the velocity, in their order, perhaps without those before the rows.
-    Raises a FieldError for several datasets of which none has these axes.
+    Parameters
+    ----------
+    data
+        A dataset, a table, or a list of datasets.
+    name
+        Name of the new variable.
+    values
+        Along the axes of the velocity, in their order, perhaps without those before the rows. Of a
+        table (N,).
+    argument
+        Name of the argument, for messages.
+    vectors
+        Names of the components, if the user chose them.
+
+    Returns
+    -------
+    xarray.Dataset or pandas.DataFrame or list
+        The same object if the array has another shape.
+
+    Raises
+    ------
+    FieldError
+        For several datasets of which none has axes of these lengths.
     """
     if hasattr(data, "columns") and hasattr(data, "assign"):
         if values.shape == (len(data),):
