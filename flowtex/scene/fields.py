@@ -74,7 +74,13 @@ def share_field(field: FlowField) -> FlowField:
 
 
 def read_field(mesh: Any, options: FieldOptions, time: float | str | None = None) -> FlowField:
-    """Return the field of a mesh or of a file (at one time), or a field unchanged."""
+    """Return the field of a mesh or of a file (at one time), or a field unchanged.
+
+    Raises
+    ------
+    FieldError
+        For data without a flow, and for an array of colours whose nodes are unknown.
+    """
     array, uncertainty = getattr(options, ARRAY, None), options.uncertainty
     if array is not None and hasattr(mesh, "point_data"):
         mesh, array = with_array(mesh, DATA, array), None
