@@ -140,7 +140,7 @@ def _axis(array: xr.DataArray) -> str | None:
 
 
 def _by_size(array: xr.DataArray) -> str | None:
-    """Return the only axis of two or three entries that is none of space or time."""
+    """Return the only axis of length 2 or 3 apart from space and time."""
     if array.ndim < 3:
         return None
     found = []
