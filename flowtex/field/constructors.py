@@ -67,6 +67,11 @@ class FieldConstructors:
         times
             Time of each step, (T,). By default the reader's time values, or ``TimeValue`` in the
             field data of every step, by which steps are sorted, or 0, 1, 2, ...
+        components
+            Directions of the components: ``"polar"`` or ``"cylindrical"`` for away from the z axis,
+            around it, and along it, ``"spherical"`` for away from the origin, southward and
+            eastward. Of two components the spherical ones are southward and eastward. By default
+            they are along x, y and z.
         periodic, name, sign_free
             As for :meth:`from_arrays`; ``periodic`` and ``sign_free`` are for structured meshes
             only.
@@ -158,7 +163,9 @@ class FieldConstructors:
         block
             Number or path of the block to draw, such as ``"Base/Zone 1"``, if the file has several.
             Numbers count from 0 and include only blocks with cells.
-        projection, globe, level, sel, isel, mask, components
+        components
+            As for :meth:`from_pyvista` and :meth:`from_xarray`.
+        projection, globe, level, sel, isel, mask
             As for :meth:`from_xarray`, for gridded data and models.
         uncertainty
             As for :meth:`from_xarray`; of a mesh a scalar.
@@ -238,8 +245,10 @@ class FieldConstructors:
             land.
         components
             Directions of the components: ``"earth"`` for eastward and northward, ``"grid"`` for
-            along rows and columns, ``"plane"`` for along x and y. By default the names of the
-            variables and the grid decide; ``field.reading.of("components")`` names the rule.
+            along rows and columns, ``"plane"`` for along x and y, ``"polar"`` for away from the
+            origin and around it, ``"spherical"`` for southward and eastward, along the colatitude
+            and the longitude. By default the names of the variables and the grid decide;
+            ``field.reading.of("components")`` names the rule.
         **selection
             The same as ``sel``, such as ``level=500`` or ``time="2000-01-02"``. ``time`` and
             ``level`` select along these axes whatever their names. By default all times, the level

@@ -21,10 +21,10 @@ from flowtex.errors import FieldError
 #: Description of all other arguments in docstrings.
 SETTINGS_TEXT = "Any setting of :class:`~flowtex.Settings`, such as ``samples=25``."
 #: Arguments for geospatial data only.
-OF_EARTH = ("projection", "globe", "level", "sel", "isel", "mask", "components")
+OF_EARTH = ("projection", "globe", "level", "sel", "isel", "mask")
 #: Arguments for meshes only.
 OF_MESHES = ("plane", "slice", "contour", "block", "times", "periodic", "sign_free", "preference")
-OF_DATASETS = ("vectors", *OF_EARTH, "uncertainty")  #: Arguments for datasets.
+OF_DATASETS = ("vectors", *OF_EARTH, "components", "uncertainty")  #: Arguments for datasets.
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
@@ -89,8 +89,10 @@ class FieldOptions:
     )
     components: str | None = option(
         None,
-        'Directions of the components of a dataset: ``"earth"`` (eastward, northward), ``"grid"`` '
-        '(along rows and columns) or ``"plane"`` (along x and y); by default the names decide.',
+        'Directions of the components: ``"polar"``, ``"cylindrical"`` (radius, angle, z) or '
+        '``"spherical"`` (radius, colatitude, longitude); of a dataset also ``"earth"`` (eastward, '
+        'northward), ``"grid"`` (along rows and columns) or ``"plane"`` (along x and y). By '
+        "default the names decide.",
     )
     uncertainty: ArrayLike | None = option(
         None,

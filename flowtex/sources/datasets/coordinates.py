@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -15,6 +15,7 @@ from flowtex.field import units
 from flowtex.field.earth import GLOBE, Projection
 from flowtex.sources.datasets import labels
 from flowtex.sources.datasets.axes import TIME, Drawn, axis_kind, coordinate_of, horizontal_dims
+from flowtex.sources.datasets.curved import ANGLES, AZIMUTHS, RADII
 from flowtex.sources.notices import Record
 from flowtex.sources.reader_errors import values_in
 
@@ -30,11 +31,6 @@ LATITUDE = re.compile(
 )
 ACROSS = re.compile(r"^(x|x_?c|x_?g|x_\w+|xp1|rlon|projection_x_coordinate)$", re.I)
 UPWARD = re.compile(r"^(y|y_?c|y_?g|y_\w+|yp1|rlat|projection_y_coordinate)$", re.I)
-#: Names of polar coordinates: the distance from the centre, and the angle.
-RADII = re.compile(r"^(r|rho|radius|radial\w*|range)$", re.I)
-ANGLES = re.compile(r"^(phi|theta|angle|polar_angle)$", re.I)
-#: Names of angles clockwise from north.
-AZIMUTHS = re.compile(r"^(az|azi|azimuth\w*|bearing|heading)$|azimuth", re.I)
 #: Letters for the place in a cell of a staggered grid: its middle first.
 MIDDLES = ("rho", "t", "c", "r", "")
 #: Parts of the names of two coordinates that belong together.
@@ -78,6 +74,20 @@ class Places:
         if self.is_earth:
             return Projection(GLOBE).positions(self.a, self.b)
         return np.stack([self.a, self.b], axis=-1)
+
+    def part(self, at: Any) -> Places:
+        """Return the places of some rows and columns."""
+        angle = self.angle
+        if angle is not None:
+            angle = angle[at]
+        return replace(self, a=self.a[at], b=self.b[at], angle=angle)
+
+    @property
+    def angles(self) -> Floats:
+        """Angles around the origin in radians, counterclockwise from x."""
+        if self.angle is not None:
+            return self.angle
+        return np.arctan2(self.b, self.a)
 
     def is_near(self, other: Places) -> bool:
         """Return whether places are the same up to a hundredth of a degree."""

@@ -47,6 +47,7 @@ from flowtex.sources.datasets.axes import (
     horizontal_dims,
 )
 from flowtex.sources.datasets.coordinates import LATITUDE, LONGITUDE, Beside, Places, ordered
+from flowtex.sources.datasets.curved import with_lonlat
 from flowtex.sources.datasets.masks import Mask, find_masks, is_constant, moves_over_land
 from flowtex.sources.datasets.select import Pair
 from flowtex.sources.datasets.staggered import find_grid, unrepeated
@@ -70,7 +71,12 @@ if TYPE_CHECKING:
 
 #: Values of ``components=``, in words.
 DIRECTIONS = {"earth": "eastward and northward", "grid": "along the grid", "plane": "along x and y"}
-
+#: Values of ``components=`` for components that are turned to those of the plane or the Earth.
+CURVED = {
+    "polar": "along a radius and an angle",
+    "cylindrical": "along a radius and an angle",
+    "spherical": "along colatitude and longitude, southward and eastward",
+}
 
 #: Coordinates of models whose components are along the grid: WRF, NEMO, ROMS, POP, MITgcm, MOM.
 MODELS = re.compile(r"XLONG|nav_lon|lon_(rho|u|v|psi)\b|glam|[TU]_?LONG?|XC|XG|geolon")
@@ -138,10 +144,20 @@ def _unit_of_angles(array: xr.DataArray) -> str:
 
 def orientation(flow: Flow, wanted: str | None) -> Orientation:
     """Return the directions of components by the rules of this module."""
-    if wanted is not None and wanted not in DIRECTIONS:
-        expected = ", ".join(f"{key!r} ({words})" for key, words in DIRECTIONS.items())
+    if wanted is not None and wanted not in {*DIRECTIONS, *CURVED}:
+        known = {**DIRECTIONS, **CURVED}
+        expected = ", ".join(f"{key!r} ({words})" for key, words in known.items())
         raise FieldError(f"components is {wanted!r}; expected {expected}")
-    found = _orientation(flow) if wanted is None else Orientation(wanted, f"components={wanted!r}")
+    _check_curved(flow, wanted)
+    if wanted is None:
+        found = _orientation(flow)
+    elif wanted in CURVED:
+        along = "earth"
+        if flow.pair.kind == select.POLAR:
+            along = "plane"
+        found = Orientation(along, f"components={wanted!r}: {CURVED[wanted]}")
+    else:
+        found = Orientation(wanted, f"components={wanted!r}")
     if not flow.places.is_earth and found.along == "earth":
         found = Orientation("plane", "positions in a plane")
     if flow.places.is_earth and found.along == "plane":
@@ -149,6 +165,26 @@ def orientation(flow: Flow, wanted: str | None) -> Orientation:
         raise FieldError(f"{text}; expected 'earth' or 'grid'")
     flow.record("components", str(found))
     return found
+
+
+def _check_curved(flow: Flow, wanted: str | None) -> None:
+    """Raise a FieldError for polar components on the Earth, and for spherical ones in a plane."""
+    is_earth = flow.places.is_earth
+    where = flow.places.why
+    names = " and ".join(flow.pair.parts)
+    reason = flow.pair.why
+    if wanted is not None:
+        reason = f"components is {wanted!r}"
+    if flow.pair.kind == select.POLAR and is_earth:
+        raise FieldError(
+            f"{names} are along a radius and an angle ({reason}), but the positions are {where}; "
+            "expected positions in a plane, or components='earth', 'grid' or 'spherical'"
+        )
+    if flow.pair.kind == select.SPHERICAL and not is_earth:
+        raise FieldError(
+            f"{names} are along colatitude and longitude ({reason}), but the positions are "
+            f"{where}; expected the axes theta and phi, or longitude and latitude"
+        )
 
 
 def _orientation(flow: Flow) -> Orientation:
@@ -198,7 +234,7 @@ class Flow:
     @property
     def name(self) -> str:
         """Name of the vectors: both components, or what these have in common."""
-        names = str(self.pair.u.name), str(self.pair.v.name)
+        names = self.pair.parts
         shared = os.path.commonprefix(names).rstrip("_")  # noqa: RUF071
         if self.is_velocity or not shared:
             return ", ".join(names)
@@ -281,6 +317,11 @@ def read_flow(data: Any, options: FieldOptions, record: Record) -> Flow:
     if joined is not None:
         datasets = Datasets(joined, datasets.closers)
         pair = select.choose_pair(datasets, str(pair.u.name), str(pair.v.name))
+    pair = select.with_directions(pair, options.components)
+    if pair.kind == select.SPHERICAL:
+        datasets = Datasets(map(with_lonlat, datasets), datasets.closers, recognised=True)
+        one, two = (select.variable(datasets, str(part.name)) for part in (pair.u, pair.v))
+        pair = replace(pair, u=one, v=two)
     record("select", f"velocity: {pair}")
     unit, factors = component_units(pair, record)
     one, two = pair.u, pair.v
@@ -380,14 +421,15 @@ def _on_rows(pair: Pair, datasets: Datasets, drawn: Drawn, record: Record) -> Fl
     rows, columns = horizontal_dims(grid.u)[0], horizontal_dims(grid.v)[-1]
     places = grid.places
     trimmed = unrepeated(places)
-    places = replace(places, a=places.a[trimmed], b=places.b[trimmed])
+    places = places.part(trimmed)
     staggered = grid.rows is not None or grid.columns is not None
     kind = "Arakawa C" if staggered else "both components at the same position"
     kind += ", rows and columns" if places.is_line else ", curvilinear"
     record("coordinates", places.why)
     bare = Component(grid.u.variable, 1.0), Component(grid.v.variable, 1.0)
-    angle = places.angle if pair.kind == select.POLAR else None
-    values = Values(bare, pair.kind, angle=angle, rows=grid.rows, columns=grid.columns)
+    angle = places.angles if pair.kind == select.POLAR else None
+    sides = {"rows": grid.rows, "columns": grid.columns}
+    values = Values(bare, pair.kind, angle=angle, swapped=pair.swapped, **sides)
     return Flow(
         replace(pair, u=grid.u, v=grid.v),
         drawn,
@@ -411,7 +453,13 @@ def _on_faces(mesh: Mesh, pair: Pair, datasets: Datasets, drawn: Drawn, record: 
     record("coordinates", why)
     record("surface", mesh.words, notable=mesh.kind == POINTS)
     bare = Component(pair.u.variable, 1.0), Component(pair.v.variable, 1.0)
-    values = Values(bare, pair.kind, axes=1)
+    angle = None
+    if pair.kind == select.POLAR and dim == NODES:
+        angle = np.arctan2(mesh.b, mesh.a)
+    elif pair.kind == select.POLAR:
+        across, upward = mesh.middles
+        angle = np.arctan2(upward, across)
+    values = Values(bare, pair.kind, axes=1, angle=angle)
     grid = f"{mesh.words}; velocity {'at nodes' if dim == NODES else 'in faces'}"
     return Flow(pair, drawn, grid, places, values, (dim,), datasets, record, mesh=mesh)
 

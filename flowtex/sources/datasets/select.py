@@ -15,7 +15,8 @@ from typing import TYPE_CHECKING, Any
 
 from flowtex.errors import FieldError
 from flowtex.field import units
-from flowtex.sources.datasets.axes import FACES, NODES
+from flowtex.sources.datasets.axes import FACES, NODES, horizontal_dims
+from flowtex.sources.datasets.curved import is_around, on_sphere
 from flowtex.sources.datasets.masks import LAND, SEA
 
 if TYPE_CHECKING:
@@ -55,6 +56,9 @@ AROUND = re.compile(
     r"^[uvw]?_?(phi|theta|t|a|az|azimuth|azimuthal|tangential|angular)$|^(azimuthal|tangential)_\w+$",
     re.I,
 )
+#: Names of components along colatitude and longitude.
+SOUTHWARD = re.compile(r"^(u|v|w|vel|velocity)_?(theta|colat\w*)$", re.I)
+AROUND_AXIS = re.compile(r"^(u|v|w|vel|velocity)_?(phi|lon\w*)$", re.I)
 #: Names of angles, beside those of directions.
 ANGLES = re.compile(r"^(angle|phase|arg|argument|phi|theta)(_?\d*|_\w+)$|_angle$", re.I)
 #: Words of descriptions that say along what the components are.
@@ -66,6 +70,8 @@ PLACES = re.compile(r"(coordinate|longitude|latitude)$")
 CARTESIAN = "cartesian"
 #: They are along a radius and an angle.
 POLAR = "polar"
+#: They are along colatitude and longitude, southward and eastward.
+SPHERICAL = "spherical"
 #: They are a magnitude, and the angle from x, or from east, counterclockwise.
 ANGLE = "angle from x"
 #: They are the speed, and the direction from which the flow comes.
@@ -86,14 +92,23 @@ class Pair:
     rank: int = 0  #: How likely they are the velocity, 0 being the most likely.
     kind: str = CARTESIAN  #: How the variables give the components.
     named: bool = False  #: Whether the user named them, so that their unit may be any.
+    #: Whether the second component was exchanged with the first, as it is along the columns.
+    swapped: bool = False
 
     def __str__(self) -> str:
-        return f"{self.u.name}, {self.v.name} ({self.why})"
+        return f"{', '.join(self.parts)} ({self.why})"
+
+    @property
+    def parts(self) -> tuple[str, str]:
+        """Names of the components in their order."""
+        if self.swapped:
+            return str(self.v.name), str(self.u.name)
+        return str(self.u.name), str(self.v.name)
 
     @property
     def names(self) -> str:
         """Names of both, with a comma between."""
-        return f"{self.u.name},{self.v.name}"
+        return ",".join(self.parts)
 
 
 def choose_pair(datasets: Sequence[xr.Dataset], u: str | None, v: str | None) -> Pair:
@@ -102,7 +117,7 @@ def choose_pair(datasets: Sequence[xr.Dataset], u: str | None, v: str | None) ->
     if u is not None and v is not None:
         one, other = (variable(datasets, name) for name in (u, v))
         others = [a for ds in datasets for a in ds.data_vars.values() if _may_be_component(a)]
-        pairs = [*pairs, *_speeds(others), *_polar(others)]
+        pairs = [*pairs, *_speeds(others), *_curved(others)]
         found = next((p for p in pairs if (p.u.name, p.v.name) == (u, v)), None)
         return replace(found or _as_named(one, other), named=True)
     if not pairs:
@@ -157,7 +172,7 @@ def find_pairs(datasets: Sequence[xr.Dataset]) -> list[Pair]:
     for partners in (PARTNERS, SECTION_PARTNERS):
         if pairs := _cartesian(arrays, partners):
             return sorted(pairs, key=_preference)
-    return [*_speeds(arrays), *_polar(arrays)]
+    return [*_speeds(arrays), *_curved(arrays)]
 
 
 def _cartesian(arrays: Sequence[xr.DataArray], partners: Mapping[str, str]) -> list[Pair]:
@@ -190,10 +205,34 @@ def _speeds(arrays: Sequence[xr.DataArray]) -> Iterator[Pair]:
             yield Pair(speed, turn, "earth", words, 5, TOWARDS if towards else FROM)
 
 
-def _polar(arrays: Sequence[xr.DataArray]) -> Iterator[Pair]:
+def _curved(arrays: Sequence[xr.DataArray]) -> Iterator[Pair]:
+    """Yield the components on a sphere and along a radius and an angle."""
     for u, v in product(arrays, arrays):
-        if RADIAL.match(str(u.name)) and AROUND.match(str(v.name)) and _match(u, v):
+        names = str(u.name), str(v.name)
+        if not _match(u, v):
+            continue
+        if SOUTHWARD.match(names[0]) and AROUND_AXIS.match(names[1]) and on_sphere(u):
+            yield Pair(u, v, "earth", "components along colatitude and longitude", 5, SPHERICAL)
+        if RADIAL.match(names[0]) and AROUND.match(names[1]) and not on_sphere(u):
             yield Pair(u, v, "plane", "components along a radius and an angle", 5, POLAR)
+
+
+def with_directions(pair: Pair, components: str | None) -> Pair:
+    """Return a pair whose components have the directions that the user names.
+
+    Of those in polar and spherical coordinates the first is along the columns, as on any grid.
+    """
+    kind = pair.kind
+    if components in ("polar", "cylindrical"):
+        kind = POLAR
+    elif components == "spherical":
+        kind = SPHERICAL
+    elif components is not None and kind in (POLAR, SPHERICAL):
+        kind = CARTESIAN
+    pair = replace(pair, kind=kind)
+    if kind in (POLAR, SPHERICAL) and is_around(horizontal_dims(pair.u)[-1]):
+        return replace(pair, u=pair.v, v=pair.u, swapped=True)
+    return pair
 
 
 def other_velocities(datasets: Sequence[xr.Dataset], drawn: Pair) -> Iterator[str]:

@@ -138,7 +138,7 @@ def _staggered(
     u: xr.DataArray, v: xr.DataArray, places: Places, sides: tuple[Sides, Sides], record: Record
 ) -> Grid:
     at = np.ix_(*(part.cells for part in sides))
-    places = replace(places, a=places.a[at], b=places.b[at])
+    places = places.part(at)
     record("align", f"{u.name} and {v.name} averaged from the sides of cells to their centres")
     return Grid(u, v, places, *sides)
 
@@ -156,7 +156,7 @@ def _at_true_cells(
     if places.is_line or places.is_earth != grid.places.is_earth:
         return grid
     at = np.ix_(grid.rows.cells, grid.columns.cells)
-    return grid._replace(places=replace(places, a=places.a[at], b=places.b[at]))
+    return grid._replace(places=places.part(at))
 
 
 def _cell_places(u: xr.DataArray, cells: tuple[str, str], beside: Beside) -> Places:
@@ -219,7 +219,7 @@ def _by_lines(u: xr.DataArray, v: xr.DataArray, at_u: Places, at_v: Places, reco
         u = u.isel({d: as_slice(found.one) for d, found in zip(dims[0], matches, strict=True)})
         v = v.isel({d: as_slice(found.other) for d, found in zip(dims[1], matches, strict=True)})
         at = np.ix_(*(found.one for found in matches))
-        places = replace(at_u, a=at_u.a[at], b=at_u.b[at])
+        places = at_u.part(at)
         v = renamed(v, dict(zip(dims[1], dims[0], strict=True)), u)
         return Grid(u, v, places)
     if labels.is_between(b_u, b_v) and labels.is_between(a_v, a_u, period):
@@ -314,7 +314,8 @@ def _by_names(u: xr.DataArray, v: xr.DataArray, cells: tuple[str, str], beside: 
             raise error from None
         sides = Sides.counted(first_column, on_sides.a.shape[1], columns[1])
         places = _moved(on_sides, sides, columns[1])
-    at_rows = Sides.counted(first_row, *rows)
+    goes_around = rows[0] == rows[1] and not places.is_earth and _wraps(places, axis=0)
+    at_rows = Sides.counted(first_row, *rows, wraps=goes_around)
     wraps = columns[0] == columns[1] and _wraps(places)
     at_columns = Sides.counted(first_column, *columns, wraps=wraps)
     return _staggered(u, v, places, (at_rows, at_columns), beside.record)
@@ -328,7 +329,8 @@ def _moved(places: Places, sides: Sides, count: int) -> Places:
         lonlat = _mean(places.a, 1, sides), _mean(places.b, 1, sides)
     a, b = (np.full((places.a.shape[0], count), np.nan) for _ in range(2))
     a[:, sides.cells], b[:, sides.cells] = lonlat
-    return replace(places, a=a, b=b, is_line=False, why=f"{places.why}, at the cell centres")
+    why = f"{places.why}, at the cell centres"
+    return replace(places, a=a, b=b, is_line=False, why=why, angle=None)
 
 
 def _nemo_places(
@@ -353,10 +355,13 @@ def _nemo_places(
     return at[0]
 
 
-def _wraps(places: Places) -> bool:
-    if not places.is_earth:
+def _wraps(places: Places, axis: int = 1) -> bool:
+    """Return whether rows, or columns of polar coordinates (axis 0), go around."""
+    if not places.is_earth and places.angle is None:
         return False
     p = places.positions
+    if axis == 0:
+        p = np.swapaxes(p, 0, 1)
     step, gap = (np.linalg.norm(a, axis=-1) for a in (p[:, 1] - p[:, 0], p[:, 0] - p[:, -1]))
     with np.errstate(invalid="ignore"):
         near = gap <= 1.5 * step

@@ -21,7 +21,7 @@ from flowtex.field.steps import Nodes, examined_steps, typical_steps
 from flowtex.sources import maps
 from flowtex.sources.datasets.coordinates import Places
 from flowtex.sources.datasets.masks import Mask, undeclared_fills, valid_range
-from flowtex.sources.datasets.select import ANGLE, FROM, POLAR, TOWARDS
+from flowtex.sources.datasets.select import ANGLE, FROM, POLAR, SPHERICAL, TOWARDS
 from flowtex.sources.datasets.staggered import Sides, centred
 from flowtex.sources.maps import Lines, NodeLines
 from flowtex.sources.notices import Record
@@ -171,6 +171,7 @@ class Values:
     kind: str  #: How the variables give the components, as in :class:`Pair`.
     axes: int = 2  #: Number of axes of the nodes.
     angle: Floats | None = None  #: Angle of polar components, (J, I).
+    swapped: bool = False  #: Whether the second component is along the columns.
     masks: tuple[tuple[xr.Variable, Mask], ...] = ()  #: In the middle of cells.
     rows: Sides | None = None  #: Sides of cells on which the components lie.
     columns: Sides | None = None
@@ -184,6 +185,8 @@ class Values:
         if staggered:  # near a wall only one of them may be known
             missing = np.isnan(u) & np.isnan(v)
             u, v = (np.where(missing, np.nan, np.nan_to_num(part)) for part in (u, v))
+        if self.swapped:
+            u, v = v, u
         if self.kind in (FROM, TOWARDS):
             size = u if self.kind == TOWARDS else -u
             u, v = size * np.sin(v), size * np.cos(v)
@@ -192,6 +195,8 @@ class Values:
         elif self.kind == POLAR and self.angle is not None:
             cos, sin = np.cos(self.angle), np.sin(self.angle)
             u, v = u * cos - v * sin, u * sin + v * cos
+        elif self.kind == SPHERICAL:
+            u, v = v, -u
         missing = np.isnan(u) | np.isnan(v)
         for variable, mask in self.masks:
             marks = read_step(variable, step, lines, axes=self.axes)

@@ -25,6 +25,7 @@ from flowtex.field.grids.grid_surface import GridSurface
 from flowtex.field.options import OF_EARTH, FieldOptions
 from flowtex.sources.meshes import parts, volume
 from flowtex.sources.meshes.cuts import Cut, check_cut, contour_of, slice_of, surface_sheet
+from flowtex.sources.meshes.turned_vectors import MeshVelocity
 from flowtex.sources.meshes.vectors import (
     NO_VELOCITY,
     Masks,
@@ -59,7 +60,9 @@ def read_meshes(mesh: Any, options: FieldOptions, *, name: str = "") -> GridArra
             f"{', '.join(given)} applies to structured meshes, and this one is not; omit it, or "
             'cut a volume as in slice="x=0.5"'
         )
-    velocity, chosen = choose(first.grid, options.vectors, plane, cut, record)
+    stored, chosen = choose(first.grid, options.vectors, plane, cut, record)
+    read_as = MeshVelocity.of(stored, options.components, record)
+    velocity = read_as.drawn
     is_plain = periodic is None and not sign_free
     if chosen is not None and is_plain and _has_cells_at_folds(first.grid, chosen, velocity):
         chosen = None
@@ -69,11 +72,10 @@ def read_meshes(mesh: Any, options: FieldOptions, *, name: str = "") -> GridArra
             return volume.plane_sheet(grid, chosen, velocity, periodic, sign_free=sign_free)
         return surface_sheet(grid, cut, velocity, record)
 
+    times = options.times
     count = len(mesh) if isinstance(mesh, (list, tuple)) else len(parts.times_of(mesh))
     ranges = volume.VolumeValues(velocity, chosen or cut, count, preference)
-    arrays = _stacked(
-        chain([first], steps), velocity, draw, options.times, preference, record, ranges
-    )
+    arrays = _stacked(chain([first], steps), read_as, draw, times, preference, record, ranges)
     record.notify()
     arrays |= {"name": name, "reading": record.reading, "vectors": velocity.name}
     arrays["volume_values"] = ranges.values()
@@ -120,20 +122,21 @@ def _has_cells_at_folds(grid: Any, plane: volume.Plane, velocity: MeshArray) -> 
 
 def _stacked(
     steps: Iterator[parts.TimeStep],
-    velocity: MeshArray,
+    read_as: MeshVelocity,
     draw: Callable[[Any], Sheet],
     times: ArrayLike | None,
     preference: str,
     record: Record,
     ranges: volume.VolumeValues,
 ) -> dict[str, Any]:
-    masks, first, reordered = Masks(velocity), next(steps), 0
+    velocity = read_as.drawn
+    masks, first, reordered = Masks(read_as.stored), next(steps), 0
     start: Sheet | None = None
     read = []
     for step in chain([first], steps):
-        parts.check_arrays(step, first, velocity)
+        parts.check_arrays(step, first, read_as.stored)
         same = parts.aligned(step, first)
-        grid = masks.masked(same.grid)
+        grid = read_as.in_space(masks.masked(same.grid))
         ranges.add(grid)
         sheet = draw(grid)
         if start is None:

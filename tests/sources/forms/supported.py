@@ -54,8 +54,9 @@ def drawn(code: str, variables: Mapping[str, Any]) -> flowtex.FlowField:
     """Run a line of code, and return the field that it would draw."""
     fields = []
 
-    def show(data: Any, **options: Any) -> None:
-        fields.append(read(data, **options))
+    def show(*data: Any, **options: Any) -> None:
+        whole = data if len(data) > 1 else data[0]
+        fields.append(read(whole, **options))
 
     names = {"flowtex": SimpleNamespace(show=show, FlowField=flowtex.FlowField), **variables}
     with warnings.catch_warnings():

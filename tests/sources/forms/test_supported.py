@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import direction_files
 import mesh_files
 import model_files
 import pytest
@@ -12,7 +13,7 @@ from known_flow import check
 from supported import ROWS, Supported, drawn
 
 pytest.importorskip("pyproj")
-MODULES = (mesh_files, model_files, text_forms)
+MODULES = (direction_files, mesh_files, model_files, text_forms)
 
 
 @pytest.mark.parametrize("row", ROWS, ids=lambda row: row.make.__name__)

@@ -391,6 +391,31 @@ def components_along_r_and_phi(unit: str) -> Any:
     ), in_plane(x, y)
 
 
+@form(options={"components": "polar"}, error="radius and an angle.*longitude|lon and lat")
+def polar_components_on_the_earth() -> Any:
+    return earth(LON, LAT)
+
+
+@form(options={"components": "spherical"}, error="expected the axes theta and phi")
+def spherical_components_in_a_plane() -> Any:
+    return lab(X, Y)
+
+
+@form(options={"components": "plane"})
+def polar_names_of_components_along_x_and_y() -> Any:
+    return lab(X, Y).rename(u="u_r", v="u_phi"), in_plane(X, Y)
+
+
+@form(error="theta is from -45° to 30°")
+def latitudes_that_are_called_theta() -> Any:
+    theta, phi = np.radians(np.arange(-45.0, 31, 5)), np.radians(LON)
+    values = np.ones((len(theta), len(phi)))
+    dims = ("theta", "phi")
+    return xr.Dataset(
+        {"u_theta": (dims, values), "u_phi": (dims, values)}, {"theta": theta, "phi": phi}
+    )
+
+
 @form()
 def x_that_decreases() -> Any:
     return lab(X, Y).isel(x=BACK), in_plane(X, Y)
