@@ -165,7 +165,7 @@ class FieldConstructors:
             Numbers count from 0 and include only blocks with cells.
         components
             As for :meth:`from_pyvista` and :meth:`from_xarray`.
-        projection, globe, level, sel, isel, mask
+        projection, globe, level, sel, isel, mask, direction
             As for :meth:`from_xarray`, for gridded data and models.
         uncertainty
             As for :meth:`from_xarray`; of a mesh a scalar.
@@ -249,6 +249,10 @@ class FieldConstructors:
             origin and around it, ``"spherical"`` for southward and eastward, along the colatitude
             and the longitude. By default the names of the variables and the grid decide;
             ``field.reading.of("components")`` names the rule.
+        direction
+            Name of the direction of a speed, as in ``vectors="ff", direction="dd"``. Its names and
+            attributes decide whether the flow comes from there or goes there, clockwise from north,
+            or whether it is an angle counterclockwise from x.
         **selection
             The same as ``sel``, such as ``level=500`` or ``time="2000-01-02"``. ``time`` and
             ``level`` select along these axes whatever their names. By default all times, the level

@@ -21,7 +21,7 @@ from flowtex.errors import FieldError
 #: Description of all other arguments in docstrings.
 SETTINGS_TEXT = "Any setting of :class:`~flowtex.Settings`, such as ``samples=25``."
 #: Arguments for geospatial data only.
-OF_EARTH = ("projection", "globe", "level", "sel", "isel", "mask")
+OF_EARTH = ("projection", "globe", "level", "sel", "isel", "mask", "direction")
 #: Arguments for meshes only.
 OF_MESHES = ("plane", "slice", "contour", "block", "times", "periodic", "sign_free", "preference")
 OF_DATASETS = ("vectors", *OF_EARTH, "components", "uncertainty")  #: Arguments for datasets.
@@ -94,6 +94,12 @@ class FieldOptions:
         'northward), ``"grid"`` (along rows and columns) or ``"plane"`` (along x and y). By '
         "default the names decide.",
     )
+    direction: str | None = option(
+        None,
+        "Variable of a dataset with the direction of a speed, which ``vectors`` names. Its "
+        "attributes decide whether it is where the flow comes from or goes to, clockwise from "
+        "north, or an angle counterclockwise from x.",
+    )
     uncertainty: ArrayLike | None = option(
         None,
         "Directional uncertainty, which shortens and fades streaks: a scalar name or array "
@@ -102,7 +108,8 @@ class FieldOptions:
     )
 
     def __post_init__(self) -> None:
-        """Join the names of components to ``vectors``."""
+        """Join the names of components, and those of a speed and a direction, to ``vectors``."""
+        self._join_direction()
         names = [name for name in (self.u, self.v, self.w) if name is not None]
         for argument in ("vectors", *"uvw"):
             name = getattr(self, argument)
@@ -122,6 +129,27 @@ class FieldOptions:
         object.__setattr__(self, "vectors", ",".join(names))
         for name in "uvw":
             object.__setattr__(self, name, None)
+
+    def _join_direction(self) -> None:
+        """Put the names of a speed and of its direction into ``vectors``."""
+        if self.direction is None:
+            return
+        if not isinstance(self.direction, str):
+            raise FieldError(
+                f"direction is {brief(self.direction)}; expected the name of a variable. Of arrays "
+                "pass the components, as u + 1j * v = speed * np.exp(1j * angle)"
+            )
+        if self.v is not None or self.w is not None:
+            raise FieldError(
+                f"direction is {self.direction!r} and components are named too; expected the speed "
+                f'alone, as in vectors="speed", direction="{self.direction}"'
+            )
+        speed = self.vectors
+        if self.u is not None:
+            speed = self.u
+            object.__setattr__(self, "u", None)
+        if speed is not None and "," not in speed:
+            object.__setattr__(self, "vectors", f"{speed},{self.direction}")
 
     @classmethod
     def of_dataset(cls, given: Mapping[str, Any]) -> FieldOptions:

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 #: Arguments that have no meaning for arrays.
 NOT_OF_ARRAYS = (
     *("plane", "slice", "contour", "block", "preference"),
-    *("level", "sel", "isel", "mask"),
+    *("level", "sel", "isel", "mask", "direction"),
 )
 #: Names of the positions, in small letters.
 PLACES = (("x", "y", "z"), ("x", "y"))

@@ -42,13 +42,17 @@ def is_around(dim: str) -> bool:
 
 
 def with_lonlat(ds: xr.Dataset) -> xr.Dataset:
-    """Return a dataset whose colatitudes and longitudes are those of a globe in degrees."""
+    """Return a dataset whose colatitudes and longitudes are those of a globe in degrees.
+
+    Raises a FieldError for colatitudes beyond the poles.
+    """
     lines = {str(name): line for name, line in ds.coords.items() if line.dims == (name,)}
     colatitudes = {name: line for name, line in lines.items() if COLATITUDES.match(name)}
     changed = {}
     for name, line in colatitudes.items():
         degrees = _degrees(line, MOST_RADIANS)
-        low, high = float(degrees.min()), float(degrees.max())
+        low = float(degrees.min())
+        high = float(degrees.max())
         if low < -1e-3 or high > 180.001:
             raise FieldError(
                 f"{name} is from {low:.4g}° to {high:.4g}°; expected colatitudes, from 0 at the "

@@ -32,7 +32,7 @@ from flowtex.errors import FieldError
 from flowtex.field import units
 from flowtex.field.options import FieldOptions
 from flowtex.field.steps import typical_steps
-from flowtex.sources.datasets import labels, select
+from flowtex.sources.datasets import directions, labels, select
 from flowtex.sources.datasets.align import align
 from flowtex.sources.datasets.axes import (
     LEVEL,
@@ -107,16 +107,9 @@ def component_units(pair: Pair, record: Record) -> tuple[str, tuple[float, float
 
     The unit is empty where neither has one. The factor of a direction is that to radians.
     """
-    if pair.kind in (select.FROM, select.TOWARDS):
-        angle = str(pair.v.attrs.get("units", "")) or "degree"
-        record("units", f"{pair.v.name} is a {pair.kind} north, clockwise")
+    if pair.kind in directions.ANGULAR:
         unit = select.velocity_unit(pair.u, any_kind=pair.named)
-        return unit, (1.0, units.factor(angle, "radian") or 1.0)
-    if pair.kind == select.ANGLE:
-        angle = str(pair.v.attrs.get("units", "")) or _unit_of_angles(pair.v)
-        record("units", f"{pair.v.name} is in {angle}, counterclockwise from x")
-        unit = select.velocity_unit(pair.u, any_kind=pair.named)
-        return unit, (1.0, units.factor(angle, "radian") or 1.0)
+        return unit, (1.0, _angle_factor(pair, record))
     one, other = (select.velocity_unit(a, any_kind=pair.named) for a in (pair.u, pair.v))
     if not one or not other:
         if one != other:
@@ -133,13 +126,25 @@ def component_units(pair: Pair, record: Record) -> tuple[str, tuple[float, float
     return one, (1.0, factor)
 
 
-def _unit_of_angles(array: xr.DataArray) -> str:
-    """Return the unit of angles without one: radians where all are within a turn."""
-    first = array.isel({d: 0 for d in array.dims if d not in horizontal_dims(array)})
-    greatest = float(np.nanmax(np.abs(values_in(first)), initial=0.0))
-    if greatest <= MOST_RADIANS:
-        return "radian"
-    return "degree"
+def _angle_factor(pair: Pair, record: Record) -> float:
+    """Return the factor of angles to radians; without a unit, those within a turn are radians."""
+    name = str(pair.v.attrs.get("units", ""))
+    factor = units.factor(name, "radian")
+    if factor is None:
+        array = pair.v
+        first = array.isel({d: 0 for d in array.dims if d not in horizontal_dims(array)})
+        greatest = float(np.nanmax(np.abs(values_in(first)), initial=0.0))
+        name = "degree"
+        if greatest <= MOST_RADIANS:
+            name = "radian"
+        factor = units.factor(name, "radian") or 1.0
+    meaning = {
+        directions.ANGLE: "counterclockwise from x",
+        directions.FROM: "clockwise from north, where the flow comes from",
+        directions.TOWARDS: "clockwise from north, where the flow goes to",
+    }
+    record("units", f"{pair.v.name} is in {name}, {meaning[pair.kind]}")
+    return factor
 
 
 def orientation(flow: Flow, wanted: str | None) -> Orientation:
@@ -153,7 +158,7 @@ def orientation(flow: Flow, wanted: str | None) -> Orientation:
         found = _orientation(flow)
     elif wanted in CURVED:
         along = "earth"
-        if flow.pair.kind == select.POLAR:
+        if flow.pair.kind == directions.POLAR:
             along = "plane"
         found = Orientation(along, f"components={wanted!r}: {CURVED[wanted]}")
     else:
@@ -175,12 +180,12 @@ def _check_curved(flow: Flow, wanted: str | None) -> None:
     reason = flow.pair.why
     if wanted is not None:
         reason = f"components is {wanted!r}"
-    if flow.pair.kind == select.POLAR and is_earth:
+    if flow.pair.kind == directions.POLAR and is_earth:
         raise FieldError(
             f"{names} are along a radius and an angle ({reason}), but the positions are {where}; "
             "expected positions in a plane, or components='earth', 'grid' or 'spherical'"
         )
-    if flow.pair.kind == select.SPHERICAL and not is_earth:
+    if flow.pair.kind == directions.SPHERICAL and not is_earth:
         raise FieldError(
             f"{names} are along colatitude and longitude ({reason}), but the positions are "
             f"{where}; expected the axes theta and phi, or longitude and latitude"
@@ -189,8 +194,8 @@ def _check_curved(flow: Flow, wanted: str | None) -> None:
 
 def _orientation(flow: Flow) -> Orientation:
     pair, places = flow.pair, flow.places
-    if pair.kind != select.CARTESIAN:
-        return Orientation("plane" if pair.kind == select.POLAR else "earth", pair.why)
+    if pair.kind != directions.CARTESIAN:
+        return Orientation("plane" if pair.kind == directions.POLAR else "earth", pair.why)
     if len(places.a) == 1 and places.is_earth:
         return Orientation("earth", "nodes without rows and columns")
     # Components on the sides of cells are across these, whatever a long name says.
@@ -312,17 +317,8 @@ def read_flow(data: Any, options: FieldOptions, record: Record) -> Flow:
     """Find the velocity of a dataset, its grid and its places; a FieldError has the remedy."""
     choice = Choice.of(options)
     datasets = as_datasets(data, record, {*choice.sel, *choice.isel})
-    pair = select.choose_pair(datasets, *select.two_names(options.vectors))
-    joined = join_faces(datasets, pair, {*choice.sel, *choice.isel}, options.components)
-    if joined is not None:
-        datasets = Datasets(joined, datasets.closers)
-        pair = select.choose_pair(datasets, str(pair.u.name), str(pair.v.name))
-    pair = select.with_directions(pair, options.components)
-    if pair.kind == select.SPHERICAL:
-        datasets = Datasets(map(with_lonlat, datasets), datasets.closers, recognised=True)
-        one, two = (select.variable(datasets, str(part.name)) for part in (pair.u, pair.v))
-        pair = replace(pair, u=one, v=two)
-    record("select", f"velocity: {pair}")
+    datasets, pair = _chosen(datasets, choice, options)
+    record("select", f"velocity: {pair}", notable=pair.guessed)
     unit, factors = component_units(pair, record)
     one, two = pair.u, pair.v
     mesh = find_mesh(datasets)
@@ -354,6 +350,19 @@ def read_flow(data: Any, options: FieldOptions, record: Record) -> Flow:
         text = f"{pair.u.name} and {pair.v.name} are taken along the grid, which is turned against "
         record("components", text + "north; components='earth' if they are not", notable=True)
     return _masked(replace(flow, unit=unit, orientation=found), factors, options.mask)
+
+
+def _chosen(datasets: Datasets, choice: Choice, options: FieldOptions) -> tuple[Datasets, Pair]:
+    """Return the velocity, and the datasets in the form that its kind requires."""
+    pair = select.choose_pair(datasets, *select.two_names(options.vectors), options.direction)
+    joined = join_faces(datasets, pair, {*choice.sel, *choice.isel}, options.components)
+    if joined is not None:
+        datasets = Datasets(joined, datasets.closers)
+    pair = select.with_directions(pair, options.components)
+    if pair.kind == directions.SPHERICAL:
+        datasets = Datasets(map(with_lonlat, datasets), datasets.closers, recognised=True)
+    one, two = (select.variable(datasets, str(part.name)) for part in (pair.u, pair.v))
+    return datasets, replace(pair, u=one, v=two)
 
 
 def _check_surface(pair: Pair) -> None:
@@ -426,10 +435,13 @@ def _on_rows(pair: Pair, datasets: Datasets, drawn: Drawn, record: Record) -> Fl
     kind = "Arakawa C" if staggered else "both components at the same position"
     kind += ", rows and columns" if places.is_line else ", curvilinear"
     record("coordinates", places.why)
+    angle = None
+    if pair.kind == directions.POLAR:
+        angle = places.angles
     bare = Component(grid.u.variable, 1.0), Component(grid.v.variable, 1.0)
-    angle = places.angles if pair.kind == select.POLAR else None
-    sides = {"rows": grid.rows, "columns": grid.columns}
-    values = Values(bare, pair.kind, angle=angle, swapped=pair.swapped, **sides)
+    values = Values(
+        bare, pair.kind, angle=angle, swapped=pair.swapped, rows=grid.rows, columns=grid.columns
+    )
     return Flow(
         replace(pair, u=grid.u, v=grid.v),
         drawn,
@@ -454,9 +466,9 @@ def _on_faces(mesh: Mesh, pair: Pair, datasets: Datasets, drawn: Drawn, record: 
     record("surface", mesh.words, notable=mesh.kind == POINTS)
     bare = Component(pair.u.variable, 1.0), Component(pair.v.variable, 1.0)
     angle = None
-    if pair.kind == select.POLAR and dim == NODES:
+    if pair.kind == directions.POLAR and dim == NODES:
         angle = np.arctan2(mesh.b, mesh.a)
-    elif pair.kind == select.POLAR:
+    elif pair.kind == directions.POLAR:
         across, upward = mesh.middles
         angle = np.arctan2(upward, across)
     values = Values(bare, pair.kind, axes=1, angle=angle)
@@ -467,7 +479,7 @@ def _on_faces(mesh: Mesh, pair: Pair, datasets: Datasets, drawn: Drawn, record: 
 def _masked(flow: Flow, factors: tuple[float, float], wanted: Any) -> Flow:
     record, axes = flow.record, flow.values.axes
     turn = 2 * np.pi / factors[1] * (1 + 1e-6)
-    is_direction = flow.pair.kind in (select.FROM, select.TOWARDS)
+    is_direction = flow.pair.kind in (directions.FROM, directions.TOWARDS)
     limits = (-turn, turn) if is_direction and wanted is not False else None
     one = checked_component(flow.pair.u, factors[0], axes, wanted, record)
     two = checked_component(flow.pair.v, factors[1], axes, wanted, record, limits=limits)

@@ -17,6 +17,14 @@ from flowtex.errors import FieldError
 from flowtex.field import units
 from flowtex.sources.datasets.axes import FACES, NODES, horizontal_dims
 from flowtex.sources.datasets.curved import is_around, on_sphere
+from flowtex.sources.datasets.directions import (
+    ANGLES,
+    CARTESIAN,
+    POLAR,
+    SPHERICAL,
+    TURNS,
+    convention,
+)
 from flowtex.sources.datasets.masks import LAND, SEA
 
 if TYPE_CHECKING:
@@ -47,9 +55,8 @@ SECTION_PARTNERS = {"x": "z", "u": "w"}
 MODIFIERS = re.compile(
     r"\b(status_flag|standard_error|number_of_observations|detection_minimum)\b|quality_flag"
 )
-#: Names of speeds, and of the directions that they have.
+#: Names of speeds.
 SPEEDS = re.compile(r"^(.*_)?(speed|magnitude)$|^(w|c)?(spd|spe)\d*m?$|^ws\d*m?$|^wspd\w*$", re.I)
-TURNS = re.compile(r"(^|_)(direction|dir)(_\w+)?$|^w(d|dir)\w*$|^dir\w*$", re.I)
 #: Names of components along polar coordinates, without the letters of the vector.
 RADIAL = re.compile(r"^[uvw]?_?(r|rad|radial)$|^radial_\w+$", re.I)
 AROUND = re.compile(
@@ -59,25 +66,11 @@ AROUND = re.compile(
 #: Names of components along colatitude and longitude.
 SOUTHWARD = re.compile(r"^(u|v|w|vel|velocity)_?(theta|colat\w*)$", re.I)
 AROUND_AXIS = re.compile(r"^(u|v|w|vel|velocity)_?(phi|lon\w*)$", re.I)
-#: Names of angles, beside those of directions.
-ANGLES = re.compile(r"^(angle|phase|arg|argument|phi|theta)(_?\d*|_\w+)$|_angle$", re.I)
 #: Words of descriptions that say along what the components are.
 TO_EARTH = re.compile(r"\b(earth|true|geographic)[- _]?(rotated|relative|north)|to earth\b", re.I)
 TO_GRID = re.compile(r"\bgrid[- _]?(relative|oriented|aligned)|relative to (the )?grid", re.I)
 #: Coordinates, which are no components though their standard names say x and y.
 PLACES = re.compile(r"(coordinate|longitude|latitude)$")
-#: The two variables of a velocity are its components.
-CARTESIAN = "cartesian"
-#: They are along a radius and an angle.
-POLAR = "polar"
-#: They are along colatitude and longitude, southward and eastward.
-SPHERICAL = "spherical"
-#: They are a magnitude, and the angle from x, or from east, counterclockwise.
-ANGLE = "angle from x"
-#: They are the speed, and the direction from which the flow comes.
-FROM = "direction from"
-#: They are the speed, and the direction to which the flow goes.
-TOWARDS = "direction towards"
 
 
 @dataclass(frozen=True, eq=False)
@@ -94,6 +87,7 @@ class Pair:
     named: bool = False  #: Whether the user named them, so that their unit may be any.
     #: Whether the second component was exchanged with the first, as it is along the columns.
     swapped: bool = False
+    guessed: bool = False  #: Whether the reason is a choice that a notice should report.
 
     def __str__(self) -> str:
         return f"{', '.join(self.parts)} ({self.why})"
@@ -111,8 +105,15 @@ class Pair:
         return ",".join(self.parts)
 
 
-def choose_pair(datasets: Sequence[xr.Dataset], u: str | None, v: str | None) -> Pair:
-    """Return the velocity that is named, or the only one that is likely."""
+def choose_pair(
+    datasets: Sequence[xr.Dataset], u: str | None, v: str | None, direction: str | None = None
+) -> Pair:
+    """Return the velocity that is named, or the only one that is likely.
+
+    ``direction`` names the angle of a speed. Raises a FieldError without a likely velocity.
+    """
+    if direction is not None:
+        return _with_direction(datasets, u, direction)
     pairs = find_pairs(datasets)
     if u is not None and v is not None:
         one, other = (variable(datasets, name) for name in (u, v))
@@ -134,15 +135,41 @@ def choose_pair(datasets: Sequence[xr.Dataset], u: str | None, v: str | None) ->
     return likely[0]
 
 
+def _with_direction(datasets: Sequence[xr.Dataset], speed: str | None, direction: str) -> Pair:
+    """Return a speed, the only one if none is named, with the angle that the user names."""
+    turn = variable(datasets, direction)
+    if speed is not None:
+        return _of_angle(variable(datasets, speed), turn)
+    others = [a for ds in datasets for a in ds.data_vars.values() if a.name != direction]
+    alike = [a for a in others if a.dtype.kind in "fiu" and {*a.dims} == {*turn.dims}]
+    speeds = [a for a in alike if SPEEDS.search(str(a.attrs.get("standard_name", a.name)))]
+    if len(speeds) != 1:
+        found = ", ".join(str(a.name) for a in speeds or alike) or "none"
+        raise FieldError(
+            f"direction is {direction!r}, and variables that may be its speed are {found}; name "
+            f'the speed, as in vectors="speed", direction="{direction}"'
+        )
+    return _of_angle(speeds[0], turn)
+
+
+def _of_angle(speed: xr.DataArray, angle: xr.DataArray) -> Pair:
+    """Return a magnitude and an angle that the user names."""
+    meaning = convention(speed, angle)
+    why = f"{speed.name} and {angle.name}, {meaning.words}"
+    if not meaning.is_declared:
+        why += (
+            f", as nothing says otherwise; {angle.name}.attrs['long_name'] may say \"direction "
+            'from", "direction to" or "counterclockwise from x"'
+        )
+    guessed = not meaning.is_declared
+    return Pair(speed, angle, "earth", why, kind=meaning.kind, named=True, guessed=guessed)
+
+
 def _as_named(one: xr.DataArray, other: xr.DataArray) -> Pair:
     """Return a pair that only its user knows: components, or a magnitude and an angle."""
     if not _is_angle(other) or _is_angle(one):
         return Pair(one, other, _directions(one), "as named")
-    if TURNS.search(str(other.name)):
-        why = f"{one.name} and {other.name}, a direction to"
-        return Pair(one, other, "earth", why, kind=TOWARDS)
-    why = f"{one.name} and {other.name}, an angle from x, counterclockwise"
-    return Pair(one, other, "earth", why, kind=ANGLE)
+    return _of_angle(one, other)
 
 
 def _is_angle(array: xr.DataArray) -> bool:
@@ -199,10 +226,9 @@ def _speeds(arrays: Sequence[xr.DataArray]) -> Iterator[Pair]:
             is_turn = TURNS.search(named) and is_angle and turn.ndim == speed.ndim
             if not is_turn or not named.startswith(first):
                 continue
-            wind = re.search(r"wind|^w", f"{standard} {named}") is not None
-            towards = "_to_" in named or ("_from_" not in named and not wind)
-            words = f"{speed.name} and {turn.name}, a direction {'to' if towards else 'from'}"
-            yield Pair(speed, turn, "earth", words, 5, TOWARDS if towards else FROM)
+            meaning = convention(speed, turn)
+            words = f"{speed.name} and {turn.name}, {meaning.words}"
+            yield Pair(speed, turn, "earth", words, 5, meaning.kind)
 
 
 def _curved(arrays: Sequence[xr.DataArray]) -> Iterator[Pair]:

@@ -20,8 +20,8 @@ from flowtex.field.grids.grid_nodes import find_closure
 from flowtex.field.steps import Nodes, examined_steps, typical_steps
 from flowtex.sources import maps
 from flowtex.sources.datasets.coordinates import Places
+from flowtex.sources.datasets.directions import in_components
 from flowtex.sources.datasets.masks import Mask, undeclared_fills, valid_range
-from flowtex.sources.datasets.select import ANGLE, FROM, POLAR, SPHERICAL, TOWARDS
 from flowtex.sources.datasets.staggered import Sides, centred
 from flowtex.sources.maps import Lines, NodeLines
 from flowtex.sources.notices import Record
@@ -187,16 +187,7 @@ class Values:
             u, v = (np.where(missing, np.nan, np.nan_to_num(part)) for part in (u, v))
         if self.swapped:
             u, v = v, u
-        if self.kind in (FROM, TOWARDS):
-            size = u if self.kind == TOWARDS else -u
-            u, v = size * np.sin(v), size * np.cos(v)
-        elif self.kind == ANGLE:
-            u, v = u * np.cos(v), u * np.sin(v)
-        elif self.kind == POLAR and self.angle is not None:
-            cos, sin = np.cos(self.angle), np.sin(self.angle)
-            u, v = u * cos - v * sin, u * sin + v * cos
-        elif self.kind == SPHERICAL:
-            u, v = v, -u
+        u, v = in_components(self.kind, u, v, self.angle)
         missing = np.isnan(u) | np.isnan(v)
         for variable, mask in self.masks:
             marks = read_step(variable, step, lines, axes=self.axes)

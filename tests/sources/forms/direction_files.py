@@ -144,3 +144,54 @@ def cylindrical_mesh(folder: Path) -> Made:
     radial, around = along_radius_and_angle(x, y)
     mesh.point_data["velocity"] = np.stack([radial, around, 0 * z], axis=-1)
     return {"mesh": mesh}, at_points(np.stack([x, y], axis=-1))
+
+
+def speed_beside(angle: Any, **attrs: str) -> tuple[xr.Dataset, Truth]:
+    """Return the speed on the Earth beside an angle in radians, under names without a meaning."""
+    lon, lat = np.linspace(0.0, 40.0, 21), np.linspace(-20.0, 20.0, 15)
+    east, north = wind(*np.meshgrid(lon, lat))
+    dims = ("lat", "lon")
+    speed = (dims, np.hypot(east, north), {"units": "m/s"})
+    ds = xr.Dataset(
+        {"ff": speed, "dd": (dims, angle(east, north), attrs)}, {"lon": lon, "lat": lat}
+    )
+    return ds, on_earth(lon, lat)
+
+
+SPEED = 'flowtex.show(ds, vectors="ff", direction="dd")'
+
+
+@supported(
+    KIND,
+    "speed and direction in degrees, as of stations and scatterometers",
+    SPEED,
+    '"from" in a name or an attribute: where it comes from, clockwise from north',
+)
+def speed_and_direction_from(folder: Path) -> Made:
+    attrs = {"units": "degree", "long_name": "wind direction (from)"}
+    ds, truth = speed_beside(lambda u, v: np.degrees(np.arctan2(-u, -v)) % 360, **attrs)
+    return {"ds": ds}, truth
+
+
+@supported(
+    KIND,
+    "speed and direction of a current or of waves",
+    SPEED,
+    '"to" or "towards": where it goes, clockwise from north; also in radians',
+)
+def speed_and_direction_to(folder: Path) -> Made:
+    attrs = {"units": "rad", "long_name": "direction towards which the current goes"}
+    ds, truth = speed_beside(lambda u, v: np.arctan2(u, v), **attrs)
+    return {"ds": ds}, truth
+
+
+@supported(
+    KIND,
+    "magnitude and angle",
+    SPEED,
+    '"counterclockwise", "mathematical" or "from x", or the name `angle`: from x, or from east',
+)
+def magnitude_and_angle(folder: Path) -> Made:
+    attrs = {"units": "degree", "comment": "counter-clockwise from east"}
+    ds, truth = speed_beside(lambda u, v: np.degrees(np.arctan2(v, u)), **attrs)
+    return {"ds": ds}, truth

@@ -391,6 +391,33 @@ def components_along_r_and_phi(unit: str) -> Any:
     ), in_plane(x, y)
 
 
+@variants(["ws", "speed10m", "wind_speed"], options={"direction": "wdir"})
+def the_only_speed_beside_a_direction(name: str) -> Any:
+    ds, truth = speed_and_direction("from")
+    return ds.rename(wspd=name), truth
+
+
+@form(
+    options={"vectors": "a", "direction": "b"}, says="a direction from, as nothing says otherwise"
+)
+def direction_of_wind_by_its_description_alone() -> Any:
+    ds, truth = speed_and_direction("from")
+    ds = ds.rename(wspd="a", wdir="b")
+    ds["b"].attrs = {"long_name": "bearing of the wind"}
+    return ds, truth
+
+
+@form(options={"direction": "b"}, error="may be its speed are a; name the speed")
+def a_direction_beside_no_known_speed() -> Any:
+    return speed_and_direction("from")[0].drop_attrs().rename(wspd="a", wdir="b")
+
+
+@form(options={"u": "wspd", "direction": "wdir"})
+def speed_and_direction_in_columns() -> Any:
+    ds, truth = speed_and_direction("from")
+    return ds.to_dataframe().reset_index().drop(columns="time", errors="ignore"), truth
+
+
 @form(options={"components": "polar"}, error="radius and an angle.*longitude|lon and lat")
 def polar_components_on_the_earth() -> Any:
     return earth(LON, LAT)
