@@ -140,8 +140,12 @@ def _with_direction(datasets: Sequence[xr.Dataset], speed: str | None, direction
     turn = variable(datasets, direction)
     if speed is not None:
         return _of_angle(variable(datasets, speed), turn)
-    others = [a for ds in datasets for a in ds.data_vars.values() if a.name != direction]
-    alike = [a for a in others if a.dtype.kind in "fiu" and {*a.dims} == {*turn.dims}]
+    alike = []
+    for ds in datasets:
+        for name, array in ds.data_vars.items():
+            is_beside = array.dtype.kind in "fiu" and {*array.dims} == {*turn.dims}
+            if is_beside and name != direction:
+                alike.append(array)
     speeds = [a for a in alike if SPEEDS.search(str(a.attrs.get("standard_name", a.name)))]
     if len(speeds) != 1:
         found = ", ".join(str(a.name) for a in speeds or alike) or "none"
