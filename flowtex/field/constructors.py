@@ -42,8 +42,9 @@ class FieldConstructors:
             or an UnstructuredGrid, whose surface is drawn as triangles. Of a volume this is the
             outer surface, unless ``slice`` or ``contour`` cuts it. A MultiBlock with one structured
             block, or one volume, is treated as that block; otherwise the surfaces of its blocks are
-            drawn together. The time steps of a series are a list or tuple of meshes, a
-            MultiBlock of meshes with the same nodes, or a PyVista reader with time values.
+            drawn together. Structured surfaces that meet at their borders become one surface. The
+            time steps of a series are a list or tuple of meshes, a MultiBlock of meshes with the
+            same nodes, or a PyVista reader with time values.
         vectors
             Name of the velocity on points or cells, with 2 or 3 components. By default the only
             array that can be the velocity, or the active vectors of the mesh. Components in

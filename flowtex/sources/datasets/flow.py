@@ -354,7 +354,8 @@ def read_flow(data: Any, options: FieldOptions, record: Record) -> Flow:
 
 def _chosen(datasets: Datasets, choice: Choice, options: FieldOptions) -> tuple[Datasets, Pair]:
     """Return the velocity, and the datasets in the form that its kind requires."""
-    pair = select.choose_pair(datasets, *select.two_names(options.vectors), options.direction)
+    first, second = select.two_names(options.vectors)
+    pair = select.choose_pair(datasets, first, second, options.direction)
     joined = join_faces(datasets, pair, {*choice.sel, *choice.isel}, options.components)
     if joined is not None:
         datasets = Datasets(joined, datasets.closers)

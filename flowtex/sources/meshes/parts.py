@@ -17,9 +17,18 @@ import scipy
 
 from flowtex._util.array_types import AnyArray, Bools, Floats, Indices
 from flowtex.errors import FieldError
+from flowtex.sources.meshes import borders
 from flowtex.sources.meshes.cells import check_mesh
 from flowtex.sources.meshes.meshio_files import of_meshio
-from flowtex.sources.meshes.vectors import MeshArray, Sheet, candidates, catalogue, data_of
+from flowtex.sources.meshes.vectors import (
+    BLANKING,
+    SHOWN,
+    MeshArray,
+    Sheet,
+    candidates,
+    catalogue,
+    data_of,
+)
 from flowtex.sources.notices import Record
 
 if TYPE_CHECKING:
@@ -114,7 +123,8 @@ def drawn_parts(
 
     Volumes are cut ``together``, and surfaces are drawn together. Structured grids take precedence
     over their surroundings. Those with the same nodes are time ``steps``, unless the mesh is one
-    step of a ``series``. Of several others one must be chosen.
+    step of a ``series``. Structured surfaces that meet at their borders are drawn together. Of
+    several others one must be chosen.
     """
     parts = parts_of(mesh)
     grids = {name: part for name, part in parts.items() if is_structured(part)}
@@ -126,7 +136,10 @@ def drawn_parts(
         return drawn, "one"
     if not series and _same_nodes(list(drawn.values())):
         return drawn, "steps"
-    return drawn, "together" if drawn is flat or (drawn is solid and cut) else "choose"
+    whole = drawn is flat or (drawn is solid and cut)
+    if whole or borders.meet(list(drawn.values())):
+        return drawn, "together"
+    return drawn, "choose"
 
 
 def _same_nodes(meshes: list[pv.DataSet]) -> bool:
@@ -219,7 +232,11 @@ def _together(parts: Parts, record: Record) -> pv.UnstructuredGrid:
     """Return blocks with vectors as one mesh; scalars are NaN where a block lacks them."""
     import pyvista as pv
 
-    parts = {name: part for name, part in parts.items() if candidates(part)} or parts
+    moving = {name: part for name, part in parts.items() if candidates(part)} or parts
+    still = [name for name in parts if name not in moving]
+    if still:
+        record("select", f"{', '.join(still)} has no vectors, and is not drawn", notable=True)
+    parts = moving
     text = f"{len(parts)} blocks are drawn together: {', '.join(parts)}"
     record("align", text, notable=True)
     blocks = {name: part.copy(deep=False) for name, part in parts.items()}
@@ -233,7 +250,23 @@ def _together(parts: Parts, record: Record) -> pv.UnstructuredGrid:
             data[array] = values.astype(np.float64)  # of one type, as others are dropped
         if lacking:
             record("align", f"{array!r} has no values in {', '.join(lacking)}", notable=True)
-    return pv.MultiBlock(list(blocks.values())).combine()
+    _complete_masks(blocks)
+    whole = pv.MultiBlock(list(blocks.values())).combine()
+    if borders.meet(list(blocks.values())):
+        return borders.joined(whole)
+    return whole
+
+
+def _complete_masks(blocks: Parts) -> None:
+    """Give all blocks the arrays that hide nodes or cells of one, which are dropped otherwise."""
+    for where in ("points", "cells"):
+        data = [data_of(block, where) for block in blocks.values()]
+        for name in BLANKING:
+            present = [np.asarray(each[name]) for each in data if name in each]
+            for each, block in zip(data, blocks.values(), strict=True):
+                if present and name not in each:
+                    count = block.n_points if where == "points" else block.n_cells
+                    each[name] = np.full(count, SHOWN[name], present[0].dtype)
 
 
 def _wrapped(source: Any, label: str) -> pv.DataObject:

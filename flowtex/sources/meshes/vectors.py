@@ -28,6 +28,8 @@ if TYPE_CHECKING:
 
 #: Arrays that only mark hidden parts.
 BLANKING = ("vtkGhostType", "IBlank", "vtkValidPointMask")
+#: Values of these where nothing is hidden.
+SHOWN = {"vtkGhostType": 0, "IBlank": 1, "vtkValidPointMask": 1}
 #: Names of velocities among several vectors.
 VELOCITY = re.compile(
     r"((mean|avg|average)[ _.-]?)?(vel|velocity|velocities|u|flow|wind|current)([ _.-]?mean)?",

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import pyvista as pv
 from known_flow import Truth, at_points, plane
 from scipy.spatial import Delaunay
 from supported import Made, supported
@@ -101,3 +102,57 @@ def xdmf_series(folder: Path) -> Made:
     collection = f'<Grid GridType="Collection" CollectionType="Temporal">{grids}</Grid>'
     write_xdmf(folder / "series.xmf", collection)
     return {}, truth(times=(0.0, 1.5))
+
+
+def zones() -> tuple[pv.MultiBlock, Truth]:
+    """Return two structured surfaces that meet, and the truth of both together."""
+    x, y = np.linspace(0.0, 2.0, 13), np.linspace(0.0, 1.0, 9)
+    blocks = pv.MultiBlock()
+    for name, part in (("left", x[:6]), ("right", x[5:])):
+        across, upward = np.meshgrid(part, y, indexing="ij")
+        grid = pv.StructuredGrid(across[..., None], upward[..., None], 0 * across[..., None])
+        grid["velocity"] = vectors(np.asarray(grid.points)[:, :2])
+        blocks.append(grid, name)
+    across, upward = np.meshgrid(x, y)
+    return blocks, at_points(np.stack([across.ravel(), upward.ravel()], axis=-1))
+
+
+@supported(
+    KIND,
+    "structured blocks that meet: `MultiBlock`, CGNS, PLOT3D",
+    "flowtex.show(blocks)",
+    "surfaces with common nodes on their borders are one surface; `block=` draws one",
+)
+def structured_blocks(folder: Path) -> Made:
+    blocks, true = zones()
+    return {"blocks": blocks}, true
+
+
+@supported(KIND, "files of such blocks", 'flowtex.show("zones.vtm")', "as one surface")
+def file_of_blocks(folder: Path) -> Made:
+    blocks, true = zones()
+    blocks.save(folder / "zones.vtm")
+    return {}, true
+
+
+@supported(
+    KIND, "PLOT3D grids of two dimensions", 'flowtex.show("zones.x")', "with `zones.q` beside it"
+)
+def plot3d_zones(folder: Path) -> Made:
+    blocks, true = zones()
+    shapes = [block.dimensions[:2] for block in blocks]
+    head = f"{len(shapes)}\n" + "".join(f"{i} {j}\n" for i, j in shapes)
+    grid = solution = head
+    for block in blocks:
+        x, y, _ = np.asarray(block.points, dtype=float).T
+        u, v, _ = np.asarray(block["velocity"], dtype=float).T
+        grid += numbers(x, y)
+        solution += "0.5 0.0 1000.0 7.0\n" + numbers(0 * u + 2, 2 * u, 2 * v, 0 * u + 9)
+    (folder / "zones.x").write_text(grid)
+    (folder / "zones.q").write_text(solution)
+    return {}, true
+
+
+def numbers(*arrays: Any) -> str:
+    """Return arrays as lines of text."""
+    return "".join(" ".join(f"{n:.9g}" for n in array) + "\n" for array in arrays)
