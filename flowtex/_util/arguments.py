@@ -133,8 +133,15 @@ def check_field(field: Any, kind: type) -> None:
 def closest(name: str, names: Sequence[str]) -> list[str]:
     """Return up to two names that a text stands for, begins, as "proj" does, or resembles."""
     if synonym := SYNONYMS.get(name.replace("-", "_")):
-        return [each for each in names if each.replace("-", "_") == synonym]
-    begun = [candidate for candidate in names if len(name) > 2 and candidate.startswith(name)]
+        found = []
+        for each in names:
+            if each.replace("-", "_") == synonym:
+                found.append(each)
+        return found
+    begun = []
+    for candidate in names:
+        if len(name) > 2 and candidate.startswith(name):
+            begun.append(candidate)
     return begun[:2] or difflib.get_close_matches(name, names, n=2)
 
 

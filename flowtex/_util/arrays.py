@@ -63,7 +63,8 @@ def cross(one: Floats, other: Floats) -> Floats:
     shape = np.broadcast_shapes(one.shape, other.shape)
     result = np.empty(shape, np.result_type(one, other))
     for axis in range(3):
-        ahead, behind = (axis + 1) % 3, (axis + 2) % 3
+        ahead = (axis + 1) % 3
+        behind = (axis + 2) % 3
         result[..., axis] = one[..., ahead] * other[..., behind]
         result[..., axis] -= one[..., behind] * other[..., ahead]
     return result

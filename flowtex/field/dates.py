@@ -134,9 +134,15 @@ def span_since(start: Any, date: Any) -> tuple[float, float]:
     if (match := _DATE.fullmatch(date.strip())) is None:
         raise FieldError(f"{date!r} is not a valid date")
     *parts, fraction = match.groups()
-    numbers = [int(part) for part in parts if part is not None]
+    numbers = []
+    for part in parts:
+        if part is not None:
+            numbers.append(int(part))
     microsecond = int(f"{fraction or '':0<6.6}")
-    calendar = {n: getattr(start, n) for n in ("calendar", "has_year_zero") if hasattr(start, n)}
+    calendar = {}
+    for n in ("calendar", "has_year_zero"):
+        if hasattr(start, n):
+            calendar[n] = getattr(start, n)
 
     def since(year: int, month: int = 1, day: int = 1, *clock: int) -> float:
         return float((type(start)(year, month, day, *clock, **calendar) - start).total_seconds())

@@ -150,16 +150,18 @@ class FlowField(FieldConstructors, FieldQuantities):
 
     def __reduce_ex__(self, protocol: SupportsIndex) -> str | tuple[Any, ...]:
         opened = vars(self).get(OPENED)
-        return super().__reduce_ex__(protocol) if opened is None else (opened, ())
+        if opened is None:
+            return super().__reduce_ex__(protocol)
+        return (opened, ())
 
     def __getstate__(self) -> dict[str, Any]:
         """Return the data without cached properties, which are computed again."""
         kind = type(self)
-        return {
-            name: value
-            for name, value in vars(self).items()
-            if not isinstance(getattr(kind, name, None), cached_property)
-        }
+        found = {}
+        for name, value in vars(self).items():
+            if not isinstance(getattr(kind, name, None), cached_property):
+                found[name] = value
+        return found
 
     @classmethod
     def of(cls, arrays: FieldArrays) -> FlowField:
@@ -173,10 +175,16 @@ class FlowField(FieldConstructors, FieldQuantities):
         >>> flowtex.FlowField.of(arrays).shape
         (2, 3)
         """
-        make: Any = cls.from_triangles if hasattr(arrays, "triangles") else cls.from_arrays
+        if hasattr(arrays, "triangles"):
+            make: Any = cls.from_triangles
+        else:
+            make = cls.from_arrays
         arguments = dict(vars(arrays))
         notable = arguments.pop("notable_normal")
-        kept = {k: arguments.pop(k) for k in KEPT if k in arguments}
+        kept = {}
+        for k in KEPT:
+            if k in arguments:
+                kept[k] = arguments.pop(k)
         parts = arguments.pop("parts")
         field: FlowField = make(**arguments)
         scalars = dict(field.scalars)
@@ -292,7 +300,8 @@ class FlowField(FieldConstructors, FieldQuantities):
         (31, 41)
         """
         plain = plain_grid(points, velocity, components)
-        points, velocity = plain.points, plain.velocity
+        points = plain.points
+        velocity = plain.velocity
         texts = length_unit or plain.length_unit, time_unit, velocity_unit or plain.velocity_unit
         t, scale, v, data, words = prepared(times, texts, velocity, scalars, units, axes=2)
         words |= {"name": name, "vectors": vectors, "projection": projection}
@@ -392,7 +401,10 @@ class FlowField(FieldConstructors, FieldQuantities):
     def _moving(cls, times: Floats | None, scale: float, **arrays: Any) -> FlowField:
         """Make a field with a scaled velocity; warn if it is at rest."""
         velocity = scaled_steps(arrays.pop("velocity"), scale)
-        times = np.arange(len(velocity), dtype=float) if times is None else times.copy()
+        if times is None:
+            times = np.arange(len(velocity), dtype=float)
+        else:
+            times = times.copy()
         if not moves(velocity):
             notify(ALL_AT_REST, UserWarning)
         return cls(velocity=velocity, times=times, **arrays)
@@ -414,7 +426,9 @@ class FlowField(FieldConstructors, FieldQuantities):
         """Number of nodes as text for captions, such as ``"120 × 70 nodes"``."""
         if self.triangles is not None:
             count = len(self.triangles)
-            return "1 triangle" if count == 1 else f"{count:,} triangles"
+            if count == 1:
+                return "1 triangle"
+            return f"{count:,} triangles"
         rows, columns = self.__dict__.get(WHOLE_SHAPE, self.shape)
         return f"{columns} × {rows} nodes"
 
@@ -432,7 +446,8 @@ class FlowField(FieldConstructors, FieldQuantities):
     @cached_property
     def surface(self) -> Surface:
         """The geometry: tangents, cell sizes and positions between nodes."""
-        points, has_position = self.points, self.has_position
+        points = self.points
+        has_position = self.has_position
         if has_position is not None and not has_position.all():
             # Positions that were filled in must not count as known: tangents would bend.
             points = np.where(has_position[..., None], points, np.nan)
@@ -464,7 +479,9 @@ class FlowField(FieldConstructors, FieldQuantities):
         if not self._on_flat_map:
             return scaled_steps(self.index_velocity.speed, self.speed_scale)
         steps = map_steps(self.scalars["speed"], np.nan_to_num)
-        return steps if isinstance(self.velocity, LazySteps) else np.asarray(steps)
+        if isinstance(self.velocity, LazySteps):
+            return steps
+        return np.asarray(steps)
 
     @property
     def normal_share(self) -> float:
@@ -475,8 +492,11 @@ class FlowField(FieldConstructors, FieldQuantities):
         if frame is None or isinstance(self.velocity, LazySteps):
             return self.index_velocity.normal_share
         flow = np.asarray(self.velocity[:, self.valid])
-        total, out = np.vdot(flow, flow), flow @ np.cross(*frame)
-        return float(np.sqrt(min(np.vdot(out, out) / total, 1.0))) if total > 0 else 0.0
+        total = np.vdot(flow, flow)
+        out = flow @ np.cross(*frame)
+        if total > 0:
+            return float(np.sqrt(min(np.vdot(out, out) / total, 1.0)))
+        return 0.0
 
     @property
     def leaves_surface(self) -> bool:
@@ -501,15 +521,20 @@ class FlowField(FieldConstructors, FieldQuantities):
 
     def at_steps(self, steps: Sequence[int]) -> FlowField:
         """Return some time steps, given by increasing indices from 0, in memory."""
-        first, last = steps[0], steps[-1] + 1
+        first = steps[0]
+        last = steps[-1] + 1
         if len(steps) == len(self.times) and not isinstance(self.velocity, LazySteps):
             return self
-        index: Any = list(steps) if len(steps) < last - first else slice(first, last)
+        if len(steps) < last - first:
+            index: Any = list(steps)
+        else:
+            index = slice(first, last)
         data, parts = (
             {k: s[index] if len(s) > 1 else s for k, s in arrays.items()}
             for arrays in (self.scalars, self.parts)
         )
-        velocity, times = np.asarray(self.velocity[index]), self.times[index]
+        velocity = np.asarray(self.velocity[index])
+        times = self.times[index]
         part = replace(self, velocity=velocity, times=times, scalars=data, parts=parts)
         part.__dict__["surface"] = self.surface  # equal to what the property would make
         part.__dict__.update({k: v for k, v in self.__dict__.items() if k in _LARGE})
@@ -519,7 +544,9 @@ class FlowField(FieldConstructors, FieldQuantities):
     def typical(self) -> FlowField:
         """The field at typical steps, for ranges and lengths; at all if they are in memory."""
         late = isinstance(self.velocity, LazySteps)
-        return self.at_steps(typical_steps(len(self.times))) if late else self
+        if late:
+            return self.at_steps(typical_steps(len(self.times)))
+        return self
 
     def step_number(self, step: int) -> int:
         """Return the index of a time step from 0; negative numbers count from the end.
@@ -546,12 +573,16 @@ class FlowField(FieldConstructors, FieldQuantities):
             raise FieldError(
                 f"{self!r} has no lines of nodes; coarsen it, as in mesh.decimate(0.5)"
             )
-        factor, picks = checked_count("factor", factor, expected="1 or more"), []
+        factor = checked_count("factor", factor, expected="1 or more")
+        picks = []
         for count, closed in zip(self.shape, self.periodic, strict=True):
             lines = np.arange(0, count, factor)
             if closed and lines[-1] != count - 1:
                 lines = np.append(lines, count - 1)
-            fewest = 4 if closed else 2
+            if closed:
+                fewest = 4
+            else:
+                fewest = 2
             if len(lines) < fewest:
                 raise FieldError(
                     f"factor is {factor}, which keeps {len(lines)} of {count} lines; expected a "
@@ -578,7 +609,10 @@ class FlowField(FieldConstructors, FieldQuantities):
         )
 
     def __repr__(self) -> str:
-        steps = "steady" if self.steady else f"{len(self.times)} steps"
+        if self.steady:
+            steps = "steady"
+        else:
+            steps = f"{len(self.times)} steps"
         closed = "".join(a for a, p in zip("ji", self.periodic, strict=True) if p)[::-1]
         return (
             f"FlowField({self.name or 'unnamed'}: {self.size_text}, {steps}"

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import partial
 from typing import Any, NamedTuple, TypeAlias
 
@@ -35,7 +35,9 @@ class LazySteps:
         kept: int = KEPT_BYTES,
         quick: bool = False,
     ) -> None:
-        self._count, self._read, self._most = count, read, kept
+        self._count = count
+        self._read = read
+        self._most = kept
         self.quick = quick
         self._kept: ByteCache[int, Floats] = ByteCache(kept, max_count=MOST_KEPT)
         self._shape: tuple[int, ...] | None = None
@@ -87,12 +89,16 @@ class LazySteps:
 
     def _picked(self, numbers: AnyArray, rest: Any, number: int) -> Floats:
         step = self.step(int(numbers[number]))
-        return np.asarray(step[rest]) if rest else step
+        if rest:
+            return np.asarray(step[rest])
+        return step
 
     def __getitem__(self, key: Any) -> Any:
         first, rest = (key[0], key[1:]) if isinstance(key, tuple) else (key, ())
         if isinstance(first, (int, np.integer)):
-            return self.step(int(first))[rest] if rest else self.step(int(first))
+            if rest:
+                return self.step(int(first))[rest]
+            return self.step(int(first))
         numbers = np.arange(self._count)[first]
         if first is Ellipsis or numbers.ndim != 1:
             return np.asarray(self)[key]
@@ -125,7 +131,9 @@ class Nodes(NamedTuple):
 
 def first_step(values: Any) -> Any:
     """Return the first step of lazy ones, and anything else as it is."""
-    return values[0] if isinstance(values, LazySteps) else values
+    if isinstance(values, LazySteps):
+        return values[0]
+    return values
 
 
 def typical_steps(count: int) -> list[int]:
@@ -147,7 +155,11 @@ def examined_steps(count: int, size: int) -> list[int]:
 def moves(steps: Steps) -> bool:
     """Return whether a velocity moves at any step, or at a typical one of a late series."""
     count = len(steps)
-    numbers = typical_steps(count) if isinstance(steps, LazySteps) else range(count)
+    numbers: Sequence[int]
+    if isinstance(steps, LazySteps):
+        numbers = typical_steps(count)
+    else:
+        numbers = range(count)
     return any(np.nan_to_num(steps[n]).any() for n in numbers)
 
 
@@ -162,4 +174,6 @@ def scaled_steps(steps: Steps, scale: float) -> Steps:
     """Return steps times a factor."""
     if scale == 1.0:
         return steps
-    return steps.map(partial(np.multiply, scale)) if isinstance(steps, LazySteps) else steps * scale
+    if isinstance(steps, LazySteps):
+        return steps.map(partial(np.multiply, scale))
+    return steps * scale

@@ -79,7 +79,8 @@ def is_angle(text: str) -> bool:
 
 def factor(unit: str, other: str) -> float | None:
     """Return the factor from a unit to another one; ``None`` where they measure other things."""
-    one, two = parsed(unit), parsed(other)
+    one = parsed(unit)
+    two = parsed(other)
     if one is None or two is None or one.dimensionality != two.dimensionality:
         return None
     return float(registry().Quantity(1.0, one).to(two).magnitude)
@@ -88,7 +89,9 @@ def factor(unit: str, other: str) -> float | None:
 def symbol(text: str) -> str:
     """Return the short form of a unit for legends, as ``"m/s"`` for ``"m s-1"``."""
     unit = parsed(text)
-    return text if unit is None or not unit.dimensionality else f"{unit:~C}".replace("**", "^")
+    if unit is None or not unit.dimensionality:
+        return text
+    return f"{unit:~C}".replace("**", "^")
 
 
 def speed_unit(length: str, time: str) -> str:
@@ -97,7 +100,9 @@ def speed_unit(length: str, time: str) -> str:
         return ""
     if time.startswith(f"{length} / "):  # of examples: times in lengths per free-stream speed
         return time.removeprefix(f"{length} / ")
-    return f"{length} / ({time})" if "/" in time else f"{length}/{time}"
+    if "/" in time:
+        return f"{length} / ({time})"
+    return f"{length}/{time}"
 
 
 def velocity_units(length: str, time: str, velocity: str) -> tuple[float, str, str]:
@@ -111,10 +116,16 @@ def velocity_units(length: str, time: str, velocity: str) -> tuple[float, str, s
     given = time
     if length and not time:
         unit = parsed(velocity)
-        parts = [] if unit is None else [name for name, _ in (1 * unit).unit_items()]
+        if unit is None:
+            parts = []
+        else:
+            parts = [name for name, _ in (1 * unit).unit_items()]
         time = next((symbol(name) for name in parts if measures(name, TIMES)), "s")
     own = speed_unit(length, time)
-    scale = factor(velocity, own) if own else 1.0
+    if own:
+        scale = factor(velocity, own)
+    else:
+        scale = 1.0
     if scale is None and not measures(velocity, VELOCITIES) and parsed(velocity) is not None:
         return 1.0, given, symbol(velocity)
     if scale is None:

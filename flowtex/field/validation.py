@@ -29,7 +29,10 @@ NO_DATA = "no data"  #: The scalar that is 1 where there are no data, 0 elsewher
 def node_positions(points: Any) -> Any:
     """Return positions (J, I, 2 or 3) from a tuple of arrays, also (I,) and (J,); else as is."""
     is_tuple = isinstance(points, (tuple, list)) and len(points) in (2, 3)
-    sizes = [np.ndim(part) for part in points] if is_tuple else []
+    if is_tuple:
+        sizes = [np.ndim(part) for part in points]
+    else:
+        sizes = []
     if sizes == [1, 1]:
         for name, line in zip("xy", points, strict=True):
             steps: Floats = np.diff(np.ma.filled(np.ma.asarray(line, dtype=float), np.nan))
@@ -46,13 +49,18 @@ def node_positions(points: Any) -> Any:
         raise FieldError(
             f"points are arrays of shapes {', '.join(map(str, shapes))}; expected one shape (J, I)"
         )
-    return np.ma.stack(points, axis=-1) if any(map(np.ma.isMA, points)) else np.stack(points, -1)
+    if any(map(np.ma.isMA, points)):
+        return np.ma.stack(points, axis=-1)
+    return np.stack(points, -1)
 
 
 def as_numbers(name: str, values: ArrayLike) -> tuple[Floats, Any]:
     """Return values as float64, copied if necessary, and the nodes (J, I) that a mask hides."""
     values = host_array(name, values)
-    mask = np.ma.getmaskarray(values) if np.ma.isMaskedArray(values) else None
+    if np.ma.isMaskedArray(values):
+        mask = np.ma.getmaskarray(values)
+    else:
+        mask = None
     array = np.asarray(np.ma.getdata(values))
     if array.dtype.kind not in "fiub":
         raise FieldError(
@@ -62,7 +70,10 @@ def as_numbers(name: str, values: ArrayLike) -> tuple[Floats, Any]:
     array = np.asarray(array, np.float64)
     if mask is None:
         return array, np.False_
-    hidden = mask.any(axis=-1) if mask.ndim else mask
+    if mask.ndim:
+        hidden = mask.any(axis=-1)
+    else:
+        hidden = mask
     while hidden.ndim > 2:
         hidden = hidden.any(axis=0)
     return array, hidden
@@ -147,12 +158,14 @@ def scalar_faults(
     argument: str, shape: tuple[int, ...], steps: int, arrays: Mapping[str, Floats], reason: str
 ) -> list[str]:
     """Return faults in the shapes of scalars at nodes or cells of this shape."""
-    return [
-        f"{argument}[{name!r}] has shape {np.shape(array)}; expected {shape} or "
-        f"{(steps, *shape)}, {reason}"
-        for name, array in arrays.items()
-        if np.shape(array) not in (shape, (steps, *shape))
-    ]
+    found = []
+    for name, array in arrays.items():
+        if np.shape(array) not in (shape, (steps, *shape)):
+            found.append(
+                f"{argument}[{name!r}] has shape {np.shape(array)}; expected {shape} or "
+                f"{(steps, *shape)}, {reason}"
+            )
+    return found
 
 
 def cell_faults(
@@ -160,7 +173,10 @@ def cell_faults(
 ) -> list[str]:
     """Return faults in the shapes of scalars at cells, and in their names."""
     faults = scalar_faults("cell_scalars", shape, steps, cells, "one value for each cell")
-    twice = [name for name in cells if name in nodal]
+    twice = []
+    for name in cells:
+        if name in nodal:
+            twice.append(name)
     return faults + [f"{n!r} is in scalars and in cell_scalars; expected one" for n in twice]
 
 
@@ -188,7 +204,10 @@ def time_faults(t: Floats | None, count: int) -> list[str]:
 def range_faults(p: Floats, v: Floats, ok: Bools) -> list[str]:
     """Return faults in the size of positions, and of velocities, NaN where not valid."""
     faults = []
-    node_size = largest(p) if ok.all() else largest(p, ok[..., None])
+    if ok.all():
+        node_size = largest(p)
+    else:
+        node_size = largest(p, ok[..., None])
     for name, most, ends in (("points", node_size, LENGTHS), ("velocity", largest(v), MAGNITUDES)):
         if most and not ends[0] <= most <= ends[1]:
             faults.append(
@@ -211,7 +230,10 @@ def node_faults(p: Floats, ok: Bools) -> list[str]:
             f"{int(ok.sum())} of {ok.size} nodes are usable, but no four of them form a cell; "
             "check the mask"
         ]
-    nodes = p.reshape(-1, p.shape[-1]) if ok.all() else p[ok]
+    if ok.all():
+        nodes = p.reshape(-1, p.shape[-1])
+    else:
+        nodes = p[ok]
     offsets = nodes - nodes.mean(axis=0)
     if (size := largest(offsets)) == 0:
         return ["all usable nodes lie at one point; expected a surface: check the coordinates"]
@@ -271,7 +293,10 @@ def filled_gaps(
             velocity = with_gaps("velocity", velocity)
         except FieldError:  # the field lists all faults later
             return unchanged
-        masks = _known(velocity) if velocity.ndim == axes + 2 else []
+        if velocity.ndim == axes + 2:
+            masks = _known(velocity)
+        else:
+            masks = []
     if len(masks) < 2 or not isinstance(unchanged[1], Mapping):
         return unchanged
     sometimes: Bools = np.any(masks, axis=0)
@@ -286,7 +311,9 @@ def filled_gaps(
 def _steps_to_compare(velocity: LazySteps) -> list[int]:
     if velocity.quick:
         return examined_steps(len(velocity), velocity[0].size)
-    return [] if _known(velocity[0]).all() else typical_steps(len(velocity))
+    if _known(velocity[0]).all():
+        return []
+    return typical_steps(len(velocity))
 
 
 def _filled(sometimes: Bools, step: Floats) -> Floats:
@@ -325,7 +352,10 @@ def prepared(
     """
     texts = (texts[0], texts[1] or symbol(unit_text(times)), texts[2])
     times, time_unit, start = as_seconds(times, texts[1])
-    t = None if times is None else with_gaps("times", times)
+    if times is None:
+        t = None
+    else:
+        t = with_gaps("times", times)
     scale, time_unit, velocity_unit = velocity_units(texts[0], time_unit, texts[2])
     unit = velocity_unit or speed_unit(texts[0], time_unit)
     filled = filled_gaps(velocity, scalars, units, axes=axes, unit=unit)

@@ -151,7 +151,11 @@ def _pictures(shown: Any) -> str:
 
 def _displayed_in(shown: Any) -> list[Displayed]:
     if isinstance(shown, ipywidgets.Box):
-        return [widget for child in shown.children for widget in _displayed_in(child)]
+        found = []
+        for child in shown.children:
+            for widget in _displayed_in(child):
+                found.append(widget)
+        return found
     if isinstance(shown, Displayed):
         return [shown]
     return []

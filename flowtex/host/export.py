@@ -367,10 +367,9 @@ def scene_pieces(contents: Contents) -> Iterator[str]:
 
 def map_pieces(basemap: str | Mapping[str, object], contents: Contents) -> Iterator[str]:
     """Yield the text of the page of a web map in pieces."""
-    loaded = [
-        f'href="{MAPLIBRE}/{name}" integrity="{digest}" crossorigin="anonymous">'
-        for name, digest in MAPLIBRE_DIGESTS.items()
-    ]
+    loaded = []
+    for name, digest in MAPLIBRE_DIGESTS.items():
+        loaded.append(f'href="{MAPLIBRE}/{name}" integrity="{digest}" crossorigin="anonymous">')
     kinds = ('preload" as="fetch" data-module=""',) * 2 + ('stylesheet"',)
     anywhere = "'self' https: http: data: blob:"  # a style names servers of its own
     yield from _page(

@@ -262,7 +262,10 @@ class Feed:
             self._announce(self.header)
             if self._live:
                 kept = ("flow/", "slices/", "extra/")
-                colours = {n: part for n, part in parts.items() if not n.startswith(kept)}
+                colours = {}
+                for n, part in parts.items():
+                    if not n.startswith(kept):
+                        colours[n] = part
                 self._deliver(colours, again=False)
 
     def _send_first(self) -> None:

@@ -454,7 +454,10 @@ class FlowWidget(AppearanceAttributes, SettingTraits, Displayed):
                 self._still = self._framed(self._frame, message)
             self._update_stills()
         if kind == "appearance" and isinstance(message.get("changes"), dict):
-            chosen = {n: value for n, value in message["changes"].items() if n in CHOSEN}
+            chosen = {}
+            for n, value in message["changes"].items():
+                if n in CHOSEN:
+                    chosen[n] = value
             with suppress(ValueError, KeyError, TypeError):
                 self.scene.change(chosen)
         is_known = isinstance(number, int) and 0 <= number < len(self._feeds)

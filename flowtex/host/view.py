@@ -114,7 +114,10 @@ class WebView:
         # A client finds the structure of a formula itself.
         is_whole = data.formula is not None
         drawn = [part for name, part in MARK_PARTS.items() if is_whole or getattr(settings, name)]
-        kinds = [kind for kind in drawn if data.marks and kind in data.marks.kinds]
+        kinds = []
+        for kind in drawn:
+            if data.marks and kind in data.marks.kinds:
+                kinds.append(kind)
         marks = data.marks and replace(data.marks, kinds=tuple(kinds), carried=True)
         return replace(data.recoloured(colours), marks=marks if kinds else None)
 
@@ -213,7 +216,10 @@ def browser_options(mesh: Any, **options: Any) -> tuple[Any, Options]:
     if pyvista is None or not isinstance(mesh, pyvista.BasePlotter):
         return mesh, Options.split(**options)
     field, look, bodies = mesh.flowtex.for_browser()
-    arguments = {name: value for name, value in options.items() if value is not None}
+    arguments = {}
+    for name, value in options.items():
+        if value is not None:
+            arguments[name] = value
     return field, replace(Options.split(**{**look, **arguments}), bodies=bodies)
 
 
@@ -369,7 +375,10 @@ class TileSource:
 
 
 def _group(scene: ClientData, group: str) -> Parts:
-    parts = {name: part for name, part in scene.surface().items() if name in PART_GROUPS[group]}
+    parts = {}
+    for name, part in scene.surface().items():
+        if name in PART_GROUPS[group]:
+            parts[name] = part
     if group != "controls":
         return parts
     nodes = scene.textures.geometry.position.reshape(-1, 3)

@@ -276,7 +276,10 @@ def _fit_texts(
         title.SetFontSize(max(int(title.GetFontSize() * room / width), LEAST_TITLE))
         width, height = _size(title, bar.GetTitle(), dpi)
     label_width = max((_size(label, text, dpi)[0] for text in labels), default=0)
-    ends = [options[name] for name in END_LABELS if name in options]
+    ends = []
+    for name in END_LABELS:
+        if name in options:
+            ends.append(options[name])
     end_width = max((_size(label, text, dpi)[0] + END_LINE * em for text in ends), default=0.0)
     return Texts(em, pad, width, height, label_width, end_width)
 

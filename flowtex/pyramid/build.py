@@ -182,7 +182,10 @@ def build(
         check_room(place, listed(store_at(place, read_only=False).list_dir))
     data = source_of(source, **options)
     about = about_source(data, parameter, data.chosen_lines(lines))
-    invalid = [name for name in about["scalars"] if not is_scalar_name(name)]
+    invalid = []
+    for name in about["scalars"]:
+        if not is_scalar_name(name):
+            invalid.append(name)
     if invalid:
         raise FieldError(
             f"scalar {invalid[0]!r} cannot be stored; expected a name without '/': rename it"
@@ -432,7 +435,10 @@ def _existing_parts(run: _Run, level: int) -> list[Part]:
 def _missing_parts(run: _Run, level: int, shape: tuple[int, int]) -> list[Part]:
     existing = {*_existing_parts(run, level)}
     parts = parts_of(level, shape, len(run.about["times"]))
-    missing = [part for part in parts if part not in existing]
+    missing = []
+    for part in parts:
+        if part not in existing:
+            missing.append(part)
     run.kept += len(parts) - len(missing)
     return missing
 
@@ -445,7 +451,10 @@ def _missing_tiles(run: _Run, level: int) -> Iterator[TileTask]:
         for column in range(columns):
             for first in range(0, steps, MOST_HELD):
                 group = range(first, min(first + MOST_HELD, steps))
-                missing = [t for t in group if (t, row, column, 0) not in existing]
+                missing = []
+                for t in group:
+                    if (t, row, column, 0) not in existing:
+                        missing.append(t)
                 run.kept += len(group) - len(missing)
                 if missing:
                     yield TileTask(TileKey(level, row, column), tuple(missing))

@@ -95,10 +95,9 @@ class FinestOfLevels:
         closed = self._pyramid.field.periodic
         for _ in range(MOST_MOVES):
             lines = self._lines(index, level)
-            inside = [
-                numbers % (count - 1) if is_closed else numbers
-                for numbers, count, is_closed in zip(lines, shape, closed, strict=True)
-            ]
+            inside = []
+            for numbers, count, is_closed in zip(lines, shape, closed, strict=True):
+                inside.append(numbers % (count - 1) if is_closed else numbers)
             points = self._positions(level, *inside)[0]
             finder = _locator(points, None, self._pyramid.field.projection)
             found = finder.nearest(place[None])[0][0]

@@ -104,7 +104,12 @@ class Part(NamedTuple):
 def parts_of(level: int, shape: tuple[int, int], steps: int) -> list[Part]:
     """Return the parts of a level."""
     rows, columns = (range(n) for n in parts_along(shape))
-    return [Part(level, t, j, i) for t in range(steps) for j in rows for i in columns]
+    found = []
+    for t in range(steps):
+        for j in rows:
+            for i in columns:
+                found.append(Part(level, t, j, i))
+    return found
 
 
 def parts_along(shape: tuple[int, int]) -> tuple[int, int]:
@@ -379,7 +384,10 @@ def check_about(about: Any, place: str) -> dict[str, Any]:
         raise PyramidError(
             f"{place} has format {str(version)[:40]!r}; expected {FORMAT!r}. Build it again"
         )
-    wrong = [name for name, check in _ABOUT.items() if not check(about.get(name))]
+    wrong = []
+    for name, check in _ABOUT.items():
+        if not check(about.get(name)):
+            wrong.append(name)
     if not wrong and math.prod(level_shape(about["nodes"], about["depth"])) > MOST_ROOT_NODES:
         wrong = ["depth"]
     if not wrong and about.get("uncertainty") and about["uncertainty"] not in about["scalars"]:
@@ -396,7 +404,10 @@ def check_about(about: Any, place: str) -> dict[str, Any]:
 
 def part_digest(nodes: Nodes, about: About, step: int) -> bytes:
     """Return a hash of the values of a part of a level, as they are written."""
-    scalars = {k: v for k, v in sorted(nodes.scalars.items()) if step < about["scalars"][k]}
+    scalars = {}
+    for k, v in sorted(nodes.scalars.items()):
+        if step < about["scalars"][k]:
+            scalars[k] = v
     values = [nodes.velocity[..., : about["components"]], *scalars.values()]
     arrays: list[AnyArray] = [np.asarray(array, np.float32) for array in values]
     if step == 0:

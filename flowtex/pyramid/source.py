@@ -93,7 +93,10 @@ class FieldSource:
         del valid
         field = self.field
         at = (rows, columns)
-        scalars = {k: np.asarray(s[step])[at] for k, s in field.scalars.items() if step < len(s)}
+        scalars = {}
+        for k, s in field.scalars.items():
+            if step < len(s):
+                scalars[k] = np.asarray(s[step])[at]
         velocity = np.asarray(field.velocity[step])[at]
         if self.has_position is None:
             has_position = None
@@ -118,7 +121,11 @@ class FieldSource:
         both = {
             k: [ends_of(v, robust=robust) for robust in (False, True)] for k, v in values.items()
         }
-        return {name: ends for name, ends in both.items() if None not in ends}
+        found = {}
+        for name, ends in both.items():
+            if None not in ends:
+                found[name] = ends
+        return found
 
 
 class RegionSource:
@@ -189,9 +196,9 @@ class RegionSource:
             speed = norm(nodes.velocity) * self.field.speed_scale
             for name, values in {"speed": speed, **nodes.scalars}.items():
                 found.setdefault(name, []).append(np.where(nodes.valid, values, np.nan))
-        both = {
-            k: [ends_of(np.stack(v), robust=r) for r in (False, True)] for k, v in found.items()
-        }
+        both = {}
+        for k, v in found.items():
+            both[k] = [ends_of(np.stack(v), robust=r) for r in (False, True)]
         ranges = {name: ends for name, ends in both.items() if None not in ends}
         if not ranges:
             raise FieldError("no node has data; check the selected variables")
@@ -313,7 +320,10 @@ def datasets_at(place: str, options: FieldOptions) -> list[Any]:
             f"{place} contains no readable pyramid ({words}); build one, or give a Zarr group that "
             "xarray can open (on the web see zarr.consolidate_metadata)"
         ) from None
-    levels = [d for d in groups.values() if (components and components <= {*d}) or find_pairs([d])]
+    levels = []
+    for d in groups.values():
+        if (components and components <= {*d}) or find_pairs([d]):
+            levels.append(d)
     if not levels:
         raise PyramidError(
             f"{place} contains no pyramid, and no velocity; expected two variables such as u and "

@@ -211,11 +211,10 @@ def make_tile(place: str, run: str, task: TileTask) -> None:
 def _at_step(levels: Levels, level: int, step: int, rows: Indices, columns: Indices) -> Nodes:
     nodes = levels.nodes(level, rows, columns, velocities=False)
     counts = levels.about["scalars"]
-    scalars = {
-        name: np.asarray(steps[step])
-        for name, steps in nodes.scalars.items()
-        if step < counts[name]
-    }
+    scalars = {}
+    for name, steps in nodes.scalars.items():
+        if step < counts[name]:
+            scalars[name] = np.asarray(steps[step])
     return nodes._replace(scalars=scalars)
 
 

@@ -104,10 +104,12 @@ def annotate_views(
 ) -> list[Layout]:
     """Write on a picture of scenes side by side, in place; labels say how they differ."""
     views = np.array_split(picture, len(scenes), axis=1)
-    return [
-        annotate(view, scene, camera, label=difference_text(scene, changes), **options)
-        for view, scene in zip(views, scenes, strict=True)
-    ]
+    found = []
+    for view, scene in zip(views, scenes, strict=True):
+        found.append(
+            annotate(view, scene, camera, label=difference_text(scene, changes), **options)
+        )
+    return found
 
 
 def layout(
@@ -325,7 +327,8 @@ class _Writer:
             wide = math.ceil(len(rows) / lines) * (width + self._line) - self._line
             image, draw = self._blank(wide, lines * self._line)
             for n, (name, marks) in enumerate(rows.items()):
-                x, y = (width + self._line) * (n // lines), self._line * (n % lines)
+                x = (width + self._line) * (n // lines)
+                y = self._line * (n % lines)
                 self._write(draw, x + self._line, y, name)
                 left, top = self._pad + x + 0.4 * self._line, self._pad + y + self._line / 2
                 for rim, (mark, color) in zip((RIM_COLOR, MIDDLE_COLOR), marks, strict=False):

@@ -81,12 +81,18 @@ def read_field(mesh: Any, options: FieldOptions, time: float | str | None = None
     FieldError
         For data without a flow, and for an array of colours whose nodes are unknown.
     """
-    array, uncertainty = getattr(options, ARRAY, None), options.uncertainty
+    array = getattr(options, ARRAY, None)
+    uncertainty = options.uncertainty
     if array is not None and hasattr(mesh, "point_data"):
-        mesh, array = with_array(mesh, DATA, array), None
+        mesh = with_array(mesh, DATA, array)
+        array = None
     if is_plain(mesh) and not is_dataset(mesh):
-        own = {} if array is None else {DATA: array}
-        field, array = read_arrays(mesh, options, own), None
+        if array is None:
+            own = {}
+        else:
+            own = {DATA: array}
+        field = read_arrays(mesh, options, own)
+        array = None
     else:
         if array is not None and is_dataset(mesh):
             changed = with_values(mesh, DATA, array, "scalars", options.vectors)
@@ -106,7 +112,9 @@ def read_field(mesh: Any, options: FieldOptions, time: float | str | None = None
         field = field.same_flow(scalars={**field.scalars, DATA: steps})
     # Datasets and files are averaged where they are read.
     is_done = uncertainty is None or bool(field.uncertainty and field is not mesh)
-    return field if is_done else with_uncertainty(field, uncertainty)
+    if is_done:
+        return field
+    return with_uncertainty(field, uncertainty)
 
 
 def _read(mesh: Any, options: FieldOptions, time: float | str | None) -> FlowField:
@@ -118,7 +126,10 @@ def _read(mesh: Any, options: FieldOptions, time: float | str | None) -> FlowFie
     if is_dataset(mesh):
         options.refuse(OF_MESHES, "meshes, but this is a dataset")
         return FlowField.from_xarray(mesh, **choices)
-    meshes = mesh if isinstance(mesh, (list, tuple)) and mesh else [mesh]
+    if isinstance(mesh, (list, tuple)) and mesh:
+        meshes = mesh
+    else:
+        meshes = [mesh]
     if all(isinstance(item, (str, Path)) for item in meshes):
         return FlowField.from_file(mesh, time=time, **choices)
     choices.pop("uncertainty", None)
@@ -152,7 +163,10 @@ def _stored(place: Any, options: FieldOptions, time: float | str | None) -> Flow
     if not has_parts(place):
         return None
     if is_store(place):
-        names = [name for name in options.given if name != "uncertainty"]
+        names = []
+        for name in options.given:
+            if name != "uncertainty":
+                names.append(name)
         if names := names if time is None else [*names, "time"]:
             raise FieldError(f"{', '.join(names)} applies to the source of a pyramid; omit it")
     options.refuse(OF_MESHES, "meshes, but this is a dataset")
@@ -178,10 +192,14 @@ class TracedFlow:
     @classmethod
     def of(cls, field: FlowField, settings: Settings) -> TracedFlow:
         """Return the traces from which scenes of a field draw their first picture."""
-        lines, pyramid = chosen_lines(field, settings.lines), None
+        lines = chosen_lines(field, settings.lines)
+        pyramid = None
         if is_tiled(field, settings):
             pyramid = shared_pyramid(field, settings.parameter, lines)
-        whole = pyramid.root if pyramid is not None and pyramid.depth else field
+        if pyramid is not None and pyramid.depth:
+            whole = pyramid.root
+        else:
+            whole = field
         return cls(field, shared_store(whole, settings.parameter, lines), pyramid)
 
     @property

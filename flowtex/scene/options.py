@@ -268,7 +268,10 @@ class AppearanceAttributes:
         """Set an existing attribute; the error for another one names similar ones."""
         is_known = name.startswith("_") or hasattr(type(self), name) or name in vars(self)
         if self._is_made and not is_known:
-            names = [n for n in dir(type(self)) if not n.startswith("_")]
+            names = []
+            for n in dir(type(self)):
+                if not n.startswith("_"):
+                    names.append(n)
             setting_hint = f"it is a setting: use settings.{name}"
             if name in TABLE:
                 hint = setting_hint

@@ -117,18 +117,29 @@ class Scene:
         They are fields of :class:`Appearance` and settings; :func:`follow` updates the others.
         Raises a FieldError when they choose data, and the errors of the constructor.
         """
-        field_names = [name for name in FieldOptions.__dataclass_fields__ if name in changes]
+        field_names = []
+        for name in FieldOptions.__dataclass_fields__:
+            if name in changes:
+                field_names.append(name)
         if field_names:
             raise FieldError(
                 f"beside has {', '.join(field_names)}, which selects data; both views show the "
                 "same field, so expected settings"
             )
-        field, settings = field or self._given, dict(self.settings)
+        field = field or self._given
+        settings = dict(self.settings)
         if "image" in changes:  # an image keeps its own colours
             del settings["noise"], settings["strength"]
         options = Options.split("appearance", **{**settings, **changes})
-        chosen = {n: v for n, v in vars(options.appearance).items() if n in changes}
-        look, image = _look_beside(self, chosen, field), None if "image" in chosen else self.image
+        chosen = {}
+        for n, v in vars(options.appearance).items():
+            if n in changes:
+                chosen[n] = v
+        look = _look_beside(self, chosen, field)
+        if "image" in chosen:
+            image = None
+        else:
+            image = self.image
         scene = Scene(field, options.make_settings(), look, image=image)
         scene._kept = self._kept
         return scene
@@ -149,7 +160,10 @@ class Scene:
         same_image = value.image is None or value.image is self._appearance.image
         try:
             self._check_colours(value)
-            picture = None if same_image else self._picture(value.image)
+            if same_image:
+                picture = None
+            else:
+                picture = self._picture(value.image)
         except BaseException:
             self.field = before
             raise
@@ -198,8 +212,11 @@ class Scene:
 
     def title_of(self, name: str) -> str:
         """Return the title of a legend: words and unit."""
-        unit, label = self.field.unit_of(name), self.whole.label_of(name)
-        return f"{label} ({unit})" if unit else label
+        unit = self.field.unit_of(name)
+        label = self.whole.label_of(name)
+        if unit:
+            return f"{label} ({unit})"
+        return label
 
     @property
     def scalar_limits(self) -> tuple[float, float]:
@@ -241,12 +258,16 @@ class Scene:
             return None
         if self._pyramid is None:
             self._pyramid = shared_pyramid(self.field, self.settings.parameter, self.lines)
-        return self._pyramid if self._pyramid.depth else None
+        if self._pyramid.depth:
+            return self._pyramid
+        return None
 
     @property
     def whole(self) -> FlowField:
         """The field that is drawn when all of it is in view: of a large one, its coarsest level."""
-        return self.field if self.pyramid is None else self.pyramid.root
+        if self.pyramid is None:
+            return self.field
+        return self.pyramid.root
 
     @property
     def structure(self) -> Structure:
@@ -264,10 +285,15 @@ class Scene:
     @property
     def textures(self) -> TextureSet:
         """The texture set for the current settings."""
-        textures, version = self._textures, self._version
+        textures = self._textures
+        version = self._version
         if textures is None:
-            image = self.image if self.settings.noise == "image" else None
-            store, pyramid = self.store, self.pyramid
+            if self.settings.noise == "image":
+                image = self.image
+            else:
+                image = None
+            store = self.store
+            pyramid = self.pyramid
             # Textures keep their store alive, so its id is unique while they live.
             textures = _textures.get(
                 (id(store), None if image is None else digest(image)),
@@ -325,7 +351,9 @@ class Scene:
     def step(self) -> int:
         """The time step that is nearest to the time that is shown."""
         before, after, share = self.moment
-        return before if share < 0.5 else after
+        if share < 0.5:
+            return before
+        return after
 
     def scalar(self, name: str, field: FlowField | None = None) -> Floats:
         """Values at the time that is shown, (J, I); :func:`steps_of` has the errors.
@@ -339,7 +367,8 @@ class Scene:
         return steps_of(with_scalars(field or self.field, name), name)
 
     def _limits(self, appearance: Appearance) -> tuple[float, float]:
-        name, chosen = appearance.scalar_name, appearance.clim
+        name = appearance.scalar_name
+        chosen = appearance.clim
         if isinstance(chosen, tuple):
             return chosen
         if name is None:
@@ -352,7 +381,8 @@ class Scene:
             low, high = -max(-low, high), max(-low, high)
         if appearance.norm is not None:
             norm = with_limits(appearance.norm, low, high)
-            low, high = float(norm.vmin), float(norm.vmax)
+            low = float(norm.vmin)
+            high = float(norm.vmax)
         return low, high
 
     def change(self, changes: Mapping[str, Any]) -> None:
@@ -391,7 +421,8 @@ class Scene:
         """Whether values lie below and above the limits of the colours."""
         if (name := self.scalar_name) is None:
             return False, False
-        (low, high), (least, most) = self.scalar_limits, self.scalar_range(name)
+        (low, high) = self.scalar_limits
+        (least, most) = self.scalar_range(name)
         rounding = ZERO_SHARE * (most - least)
         return low > least + rounding, high < most - rounding
 
@@ -403,17 +434,24 @@ class Scene:
         """
         key = (name, robust, self.pyramid is None)
         if key not in self._ranges:
-            stored = {} if self.pyramid is None else self.pyramid.ranges
-            ends = stored.get((name, robust)) or ends_of(self._range_values(name), robust=robust)
+            ends = None
+            if self.pyramid is not None:
+                ends = self.pyramid.ranges.get((name, robust))
+            if ends is None:
+                ends = ends_of(self._range_values(name), robust=robust)
             self._ranges[key] = widened(ends, self.field, name)
         return self._ranges[key]
 
     def _range_values(self, name: str) -> Floats:
         """Values of the valid nodes, or of the volume that they cut, at all times."""
-        field, typical = self.field, self.field.typical
+        field = self.field
+        typical = self.field.typical
         # Triangles have a value each; a cell of a grid has the place of its first node.
         on_triangles = name in field.on_cells and field.triangles is not None
-        valid = field.surface.cells[None] if on_triangles else field.valid
+        if on_triangles:
+            valid = field.surface.cells[None]
+        else:
+            valid = field.valid
         if (values := typical.volume_values.get(name)) is not None:
             return values
         if self.pyramid is None or name in self.field.scalars:
@@ -424,11 +462,16 @@ class Scene:
         """Return an independent scene that shows the same, for a thread."""
         scene = Scene(self.field)
         scene._given = self._given
-        scene.settings, scene._appearance = self.settings.copy(), self.appearance
-        scene.image, scene._noise = self.image, self._noise
+        scene.settings = self.settings.copy()
+        scene._appearance = self.appearance
+        scene.image = self.image
+        scene._noise = self._noise
         scene._show_time(self._time)
-        scene._sliced, scene._pyramid, scene._kept = self._sliced, self._pyramid, self._kept
-        scene._store, scene._textures = self.store, self.textures
+        scene._sliced = self._sliced
+        scene._pyramid = self._pyramid
+        scene._kept = self._kept
+        scene._store = self.store
+        scene._textures = self.textures
         return scene
 
     def coarsened(self, nodes: int) -> Scene:
@@ -436,16 +479,29 @@ class Scene:
 
         Its colours have the range of this one.
         """
-        whole = self.field if self.field.triangles is None else self.whole
+        if self.field.triangles is None:
+            whole = self.field
+        else:
+            whole = self.whole
         field = share_field(coarsened_field(whole, nodes))
         scene = Scene(field)
-        scale, look = self.colour_scale, self.appearance
-        limits = {"clim": (scale.low, scale.high)} if scale.norm is None else {"norm": scale.norm}
-        scene._appearance = look if look.scalar_name is None else replace(look, **limits)
-        scene.settings, scene.image = self.settings.copy(), self.image
+        scale = self.colour_scale
+        look = self.appearance
+        limits: dict[str, Any]
+        if scale.norm is None:
+            limits = {"clim": (scale.low, scale.high)}
+        else:
+            limits = {"norm": scale.norm}
+        if look.scalar_name is None:
+            scene._appearance = look
+        else:
+            scene._appearance = replace(look, **limits)
+        scene.settings = self.settings.copy()
+        scene.image = self.image
         scene._noise = self._noise
         scene._show_time(self._time)
-        parameter, lines = self.settings.parameter, self.lines
+        parameter = self.settings.parameter
+        lines = self.lines
         compose = field.steady or lines == "streamlines"
         scene._store = _coarse_stores.get(
             (id(field), parameter, lines),  # a store keeps its field alive
@@ -468,12 +524,17 @@ class Scene:
         those whose range in the whole volume is known. With ``own`` changes of the appearance,
         scalars that the flow lacks are replaced by the speed. Raises the errors of the constructor.
         """
-        look = self._appearance if own is None else _look_beside(self, own, field)
+        if own is None:
+            look = self._appearance
+        else:
+            look = _look_beside(self, own, field)
         scene = Scene(field, self.settings, look, image=self.image)
         if keep_range and field.formula is None:
-            known = field.volume_values if same_data else ()
             kept = self._shown_ranges()
-            scene._kept = {key: ends for key, ends in kept.items() if key[0] not in known}
+            if same_data:
+                known = field.volume_values
+                kept = {key: ends for key, ends in kept.items() if key[0] not in known}
+            scene._kept = kept
         scene._show_time(min(max(self._time, scene._time), float(field.times[-1])))
         return scene
 
@@ -484,7 +545,8 @@ class Scene:
 
     def follow(self, before: Scene) -> None:
         """Replace another scene, and notify its observers."""
-        self._changed, before._changed = before._changed, Signal()
+        self._changed = before._changed
+        before._changed = Signal()
         before.close()
         self._changed.emit("trace")
 
@@ -534,11 +596,14 @@ def make_scenes(mesh: Any, options: Options) -> list[Scene]:
     Equal fields are one, and share their traces. Raises a FieldError, SettingsError or ImageError
     where an argument does not fit.
     """
-    field, changes = share_field(read_field(mesh, options.field)), options.view.beside
+    field = share_field(read_field(mesh, options.field))
+    changes = options.view.beside
     if mixes_at_folds(field):
         notify(FOLDED)
     first = Scene(field, options.make_settings(field), options.appearance)
-    return [first] if changes is None else [first, first.beside(changes)]
+    if changes is None:
+        return [first]
+    return [first, first.beside(changes)]
 
 
 def _look_beside(first: Scene, changes: dict[str, Any], field: FlowField) -> Appearance:
@@ -564,7 +629,10 @@ def follow(
             return
         scene = second()
         names = [*own, "image", *(["clim"] if "scalars" in own else [])]
-        kept = {n: v for n, v in vars(scene.appearance).items() if n in names}
+        kept = {}
+        for n, v in vars(scene.appearance).items():
+            if n in names:
+                kept[n] = v
         look = _look_beside(first(), kept, scene.field)
         try:
             scene.appearance = look

@@ -64,7 +64,8 @@ class ChildError(Exception):
 
     def __init__(self, text: str, kind: str = "", trace: str = "") -> None:
         super().__init__(text)
-        self.kind, self.trace = kind, trace
+        self.kind = kind
+        self.trace = trace
 
 
 _Received = tuple[dict[str, Any], list[AnyArray]]  #: The header of an answer, and its arrays.
@@ -120,9 +121,14 @@ class Child:
         prints: bool = False,
     ) -> None:
         #: Bytes that it may take.
-        self.memory = int(MEMORY_SHARE * available_bytes()) if memory is None else memory
-        start = _forked if forks else _spawned
-        self._process = start(entry, self.memory, preload, prints)
+        if memory is None:
+            self.memory = int(MEMORY_SHARE * available_bytes())
+        else:
+            self.memory = memory
+        if forks:
+            self._process = _forked(entry, self.memory, preload, prints)
+        else:
+            self._process = _spawned(entry, self.memory, preload, prints)
         self._answers: SimpleQueue[_Received] = SimpleQueue()
         self._asking = ProcessLock()
         self._writing = ProcessLock()
@@ -207,7 +213,8 @@ class Child:
 
 
 def _value(header: dict[str, Any], memory: int) -> Any:
-    kind, text = header.get("error"), str(header.get("text", ""))
+    kind = header.get("error")
+    text = str(header.get("text", ""))
     if kind is None:
         return header.get("value")
     if kind == "Stopped":
@@ -231,7 +238,10 @@ def _listen(
         with process.answers:
             while (message := read_message(process.answers, most_bytes)) is not None:
                 header, arrays = message
-                number = header.get("number") if isinstance(header, dict) else None
+                if isinstance(header, dict):
+                    number = header.get("number")
+                else:
+                    number = None
                 if number not in waiting:
                     raise ValueError(f"an answer to request {number!r}, which was not sent")
                 waiting.discard(number)
@@ -243,8 +253,10 @@ def _listen(
 
 
 def _ending(status: int | None) -> str:
-    if status is None or status >= 0:
-        return ENDED if status is None else f"ended (status {status})"
+    if status is None:
+        return ENDED
+    if status >= 0:
+        return f"ended (status {status})"
     try:
         return f"crashed ({signal.Signals(-status).name})"
     except ValueError:
@@ -252,7 +264,9 @@ def _ending(status: int | None) -> str:
 
 
 def _forked(entry: str, memory: int, preload: tuple[str, ...], prints: bool) -> _Process:  # noqa: FBT001
-    requests, answers, status = os.pipe(), os.pipe(), os.pipe()
+    requests = os.pipe()
+    answers = os.pipe()
+    status = os.pipe()
     pipes = requests[0], answers[1], status[1]
     with suppress(OSError):  # fewer switches between the processes, where this size is allowed
         fcntl.fcntl(answers[1], fcntl.F_SETPIPE_SZ, PIPE_BYTES)
@@ -272,7 +286,9 @@ def _forked(entry: str, memory: int, preload: tuple[str, ...], prints: bool) -> 
         with suppress(OSError, ValueError):
             if select.select([status_end], [], [], STATUS_WAIT_S)[0]:
                 code = status_end.read(STATUS_BYTES)
-                return int.from_bytes(code, "big", signed=True) if code else None
+                if code:
+                    return int.from_bytes(code, "big", signed=True)
+                return None
         return None
 
     # The guard ends a child whose pipe is closed.
@@ -294,7 +310,8 @@ def _spawned(entry: str, memory: int, _preload: tuple[str, ...], prints: bool) -
         stderr=None if prints else subprocess.DEVNULL,
         start_new_session=True,
     )
-    requests, answers = process.stdin, process.stdout
+    requests = process.stdin
+    answers = process.stdout
     if requests is None or answers is None:
         raise OSError("a process has no pipes")
 

@@ -54,7 +54,8 @@ def command(function: Callable[..., Any], **arguments: Any) -> list[str]:
 
 def spawned(entry: str, memory: int, prints: bool) -> None:  # noqa: FBT001 by name alone
     """Answer the requests that come on the standard input, in a separate process."""
-    reads, writes = os.dup(0), os.dup(1)
+    reads = os.dup(0)
+    writes = os.dup(1)
     settle(memory, prints=prints)
     serve(entry, os.fdopen(reads, "rb"), os.fdopen(writes, "wb"))
 
@@ -76,7 +77,10 @@ def settle(memory: int, *, prints: bool) -> None:
         pages = Path("/proc/self/statm").read_text(encoding="utf-8").split()
         used = int(pages[5]) * resource.getpagesize()
     most = resource.getrlimit(resource.RLIMIT_DATA)[1]
-    limit = used + memory if most == resource.RLIM_INFINITY else min(used + memory, most)
+    if most == resource.RLIM_INFINITY:
+        limit = used + memory
+    else:
+        limit = min(used + memory, most)
     with suppress(ValueError, OSError):  # the system has no such limit
         resource.setrlimit(resource.RLIMIT_DATA, (limit, most))
 
@@ -162,7 +166,8 @@ def read_message(stream: IO[bytes], most_bytes: int) -> tuple[Any, list[AnyArray
         return None
     try:
         message = json.loads(header)
-        value, infos = message["value"], message["arrays"]
+        value = message["value"]
+        infos = message["arrays"]
         types = [(_type(kind), _shape(shape)) for kind, shape in infos]
     except (ValueError, TypeError, KeyError, RecursionError) as error:
         raise ValueError(f"the header of a message is malformed: {error}") from error

@@ -164,7 +164,10 @@ class Appearance(Controller):
         """Restore saved settings, colours, background and comparison; the others are the first."""
         present = self.describe()["settings"]
         settings = {**self.first["settings"], **saved.get("settings", {})}
-        changed = {k: v for k, v in settings.items() if v not in ("image", present[k])}
+        changed = {}
+        for k, v in settings.items():
+            if v not in ("image", present[k]):
+                changed[k] = v
         self.settings.update(**changed)
         whole = {**self.first, **saved}
         self.state.set(compare=whole["split"], theme=whole["theme"], background=whole["background"])

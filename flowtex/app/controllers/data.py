@@ -223,7 +223,11 @@ class Data(FlowOpener):
 
     def describe(self) -> State:
         """Return the choice of the flow."""
-        return {k: v for k, v in {"file": self.name, **asdict(self.choice)}.items() if v}
+        found = {}
+        for k, v in {"file": self.name, **asdict(self.choice)}.items():
+            if v:
+                found[k] = v
+        return found
 
     def close(self) -> None:
         """End running tasks, and remove the uploads."""
@@ -239,7 +243,10 @@ def about(field: FlowField) -> str:
     """Return a short description of a field."""
     words = [field.short_size]
     words.append("steady" if field.steady else f"{len(field.times)} times")
-    closed = [axis for axis, is_closed in zip("ji", field.periodic, strict=True) if is_closed]
+    closed = []
+    for axis, is_closed in zip("ji", field.periodic, strict=True):
+        if is_closed:
+            closed.append(axis)
     if closed:
         words.append(f"periodic along {' and '.join(sorted(closed))}")
     return " · ".join(words)
@@ -293,7 +300,10 @@ class FileBeside(FlowOpener):
         names: tuple[str, ...] = ()
         if self._flow is not None:  # that of the second with its differing parts
             pairs = zip(astuple(self._flow.choice), astuple(self.data.choice), strict=True)
-            differing = [part for part, first in pairs if part not in (first, "")]
+            differing = []
+            for part, first in pairs:
+                if part not in (first, ""):
+                    differing.append(part)
             names = (self.data.name, " · ".join([self._flow.name, *differing]))
         self.area.names = names
         self.area.follow()

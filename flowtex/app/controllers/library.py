@@ -339,7 +339,10 @@ def find_files(folder: Path) -> list[tuple[str, Path]]:
     files: list[tuple[str, Path]] = []
     for parent, folders, names in os.walk(folder):
         here = Path(parent)
-        stores = [n for n in folders if is_dataset_file(here / n) and not (here / n).is_symlink()]
+        stores = []
+        for n in folders:
+            if is_dataset_file(here / n) and not (here / n).is_symlink():
+                stores.append(n)
         depth = len(here.relative_to(folder).parts)
         hidden = {name for name in (*folders, *names) if name.startswith(".")}
         folders[:] = sorted(set(folders) - {*stores, *hidden}) if depth < FOLDER_DEPTH else []

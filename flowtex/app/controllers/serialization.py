@@ -202,7 +202,10 @@ def to_python(
         beside = {"file": split.removeprefix(FILE), "time": None}
         source = source_beside
     if beside:
-        settings = {n: value for n, value in beside.items() if n in TABLE}
+        settings = {}
+        for n, value in beside.items():
+            if n in TABLE:
+                settings[n] = value
         other = {**state, **beside, "settings": {**(state.get("settings") or {}), **settings}}
         if "scalars" in beside:  # with its own range
             other |= {"colour": beside["scalars"], "clim": None}
@@ -232,7 +235,10 @@ def _render(state: State, source: str | None, size: tuple[int, int]) -> str:
 
 
 def _part(state: State) -> dict[str, Any]:
-    values = {name: state[name] for name in FILE_ARGUMENTS if state.get(name)}
+    values = {}
+    for name in FILE_ARGUMENTS:
+        if state.get(name):
+            values[name] = state[name]
     axis, _, number = values.get("plane", "").partition("=")
     is_dataset = is_dataset_file(Path(str(state["file"])))
     if is_dataset and "block" in values:

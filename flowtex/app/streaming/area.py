@@ -319,7 +319,10 @@ class FlowArea(AppearanceAttributes):
             scene.close()
         self._scenes = self._scenes[: len(panes)]
         self._scenes += [HandedScene(self._routes) for _ in panes[len(self._scenes) :]]
-        settings = {name: value for name, value in changes.items() if name in TABLE}
+        settings = {}
+        for name, value in changes.items():
+            if name in TABLE:
+                settings[name] = value
         result = []
         for n, (scene, pane) in enumerate(zip(self._scenes, panes, strict=True)):
             values = {"camera": present["camera"], "axes": self._axes, "differs": list(settings)}
@@ -408,7 +411,10 @@ class FlowArea(AppearanceAttributes):
     def take_colours(self, choice: object, page: object = "", place: object = None) -> None:
         """Set the colours that the page requests, or report an error."""
         del page, place  # which receives the colours as well
-        changes = {name: value for name, value in mapping(choice).items() if name in CHOSEN}
+        changes = {}
+        for name, value in mapping(choice).items():
+            if name in CHOSEN:
+                changes[name] = value
         scene = self.viewport.scene
         with self._changed_by(""), suppress(KeyError, TypeError):
             scene.change(changes)
@@ -441,7 +447,10 @@ def _client_script(routes: Routes) -> str:
 def _appearance(pane: FlowHandle) -> tuple[object, ...]:
     scene = pane.scene
     settings = scene.settings
-    built = [getattr(settings, row.name) for row in TABLE.values() if row.affects != "uniform"]
+    built = []
+    for row in TABLE.values():
+        if row.affects != "uniform":
+            built.append(getattr(settings, row.name))
     baked: tuple[Any, ...] = ()
     if settings.noise != "procedural":
         baked = (settings.seed, settings.tiles)

@@ -82,10 +82,9 @@ class PointReader:
             return {}
         height = 2 * self._viewport.camera.height
         reach = MARK_REACH_PX * height / max(self._viewport.pane_size[1], 1)
-        marks = [
-            (float(np.linalg.norm(point.position - position)), point.kind)
-            for point in scene.structure.points(scene.step)[:count]
-        ]
+        marks = []
+        for point in scene.structure.points(scene.step)[:count]:
+            marks.append((float(np.linalg.norm(point.position - position)), point.kind))
         distance, kind = min(marks, default=(np.inf, ""))
         if distance < reach:
             return {"mark": kind}

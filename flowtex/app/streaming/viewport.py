@@ -199,7 +199,10 @@ class Viewport:
         first = self.scene
         changes = dict(changes or {})
         if changes:
-            looks = {n: value for n, value in changes.items() if n not in ("time", "field")}
+            looks = {}
+            for n, value in changes.items():
+                if n not in ("time", "field"):
+                    looks[n] = value
             beside = partial(first.beside, field=changes.get("field", first.field))
             scene = _fitting(first, beside, looks)
             scene.time = _time_beside(first, changes)

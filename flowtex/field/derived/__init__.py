@@ -170,7 +170,10 @@ def with_vector_scalar(field: Any, name: str) -> Any:
     base, _, letter = name.rpartition("_")
     if base == "speed":
         base = own
-    parts = [n for n in field.parts if n.rpartition("_")[0] == name]
+    parts = []
+    for n in field.parts:
+        if n.rpartition("_")[0] == name:
+            parts.append(n)
     long_name = name
     unit = ""
     steps: Steps

@@ -214,9 +214,9 @@ class Formula:
 
     def coordinates(self, shape: tuple[int, int]) -> tuple[Floats, Floats]:
         """Return evenly spaced coordinates of nodes, (J, I)."""
-        lines = [
-            np.linspace(*ends, n) for ends, n in zip(self.ranges.values(), shape[::-1], strict=True)
-        ]
+        lines = []
+        for ends, n in zip(self.ranges.values(), shape[::-1], strict=True):
+            lines.append(np.linspace(*ends, n))
         u, v = np.meshgrid(*lines)
         return u, v
 
@@ -319,11 +319,10 @@ def derivative(tree: Tree, name: str) -> Tree:
             if any(rates[1:]):
                 return ("where", parts[0], *rates[1:])
             return 0.0
-    terms = [
-        simple("*", filled(rule, dict(zip("ab", parts, strict=False))), rate)
-        for rule, rate in zip(_rules(operation), rates, strict=False)
-        if rate != 0
-    ]
+    terms = []
+    for rule, rate in zip(_rules(operation), rates, strict=False):
+        if rate != 0:
+            terms.append(simple("*", filled(rule, dict(zip("ab", parts, strict=False))), rate))
     return simple("+", *terms)
 
 
@@ -418,7 +417,9 @@ class Rates:
         if self.trees:
             return self._of(self._gradient, places).reshape(-1, 2, 2)
         steps = FUNCTION_SHARE * np.diag(np.ptp(self.ends, axis=1))
-        sides = [sum(w * self.at(places + n * h) for n, w in WEIGHTS) / h.sum() for h in steps]
+        sides = []
+        for h in steps:
+            sides.append(sum(w * self.at(places + n * h) for n, w in WEIGHTS) / h.sum())
         return np.stack(sides, axis=-1)
 
     def positions(self, places: Floats) -> Floats:
@@ -462,7 +463,9 @@ def _trees(formula: Formula) -> tuple[list[Tree], list[list[Tree]]]:
     if len(trees) < len(formula.expressions) or len(places) < len(formula.surface):
         return [], []
     trees = [filled(tree, dict(zip("xyz", places, strict=False))) for tree in trees]
-    tangents = [[derivative(place, name) for place in places] for name in formula.ranges]
+    tangents = []
+    for name in formula.ranges:
+        tangents.append([derivative(place, name) for place in places])
     if len(trees) == COMPONENTS:
         along = [[simple("*", a, b) for a, b in zip(row, trees, strict=True)] for row in tangents]
         trees = [simple("+", *row) for row in along]
@@ -473,7 +476,10 @@ def _trees(formula: Formula) -> tuple[list[Tree], list[list[Tree]]]:
 def gradient_trees(formula: Formula) -> list[Tree]:
     """Return the trees of the derivatives of the rates, row by row; none for functions."""
     trees, _ = _trees(formula)
-    gradient = [derivative(tree, name) for tree in trees for name in formula.ranges]
+    gradient = []
+    for tree in trees:
+        for name in formula.ranges:
+            gradient.append(derivative(tree, name))
     _check_sizes(gradient, "a derivative")
     return gradient
 

@@ -210,12 +210,12 @@ def find_poles(
     p, has_position, data = (np.swapaxes(a, 0, axis) for a in (points, usable, valid))
     if len(p) < 3:
         return None
-    ends = [
-        _pole(p[at], p[beside], 1 - axis, len(p) - 1 if at else 0)
-        if data[at].all() and has_position[at].all() and has_position[beside].all()
-        else None
-        for at, beside in ((0, 1), (-1, -2))
-    ]
+    ends = []
+    for at, beside in ((0, 1), (-1, -2)):
+        pole = None
+        if data[at].all() and has_position[at].all() and has_position[beside].all():
+            pole = _pole(p[at], p[beside], 1 - axis, at % len(p))
+        ends.append(pole)
     if ends == [None, None]:
         return None
     return Poles(ends[0], ends[1], len(p))

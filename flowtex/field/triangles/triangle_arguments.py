@@ -182,7 +182,8 @@ def _faults(
 ) -> list[str]:
     if p.ndim != 2 or p.shape[-1] not in (2, 3) or not len(p):
         return [f"points has shape {p.shape}; expected (N, 2) or (N, 3), one row for each node"]
-    faults, count = [], len(p)
+    faults = []
+    count = len(p)
     if corners.ndim != 2 or corners.shape[-1] != 3 or corners.dtype.kind not in "iu":
         faults.append(
             f"triangles has shape {corners.shape} and type {corners.dtype}; expected whole "
@@ -199,7 +200,10 @@ def _faults(
 def _usable(p: Floats, corners: Indices) -> tuple[Indices, Indices]:
     """Return numbers of solid triangles, each once, and pairs of nodes (n, 2) that needles join."""
     finite = finite_nodes(p[None])[0]
-    placed = np.ones(len(corners), bool) if finite.all() else finite[corners].all(axis=1)
+    if finite.all():
+        placed = np.ones(len(corners), bool)
+    else:
+        placed = finite[corners].all(axis=1)
     good = placed.copy()
     good[placed] = solid_triangles(p, corners[placed])
     once = ~repeated(corners)

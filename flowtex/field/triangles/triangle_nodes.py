@@ -32,7 +32,9 @@ def solid_triangles(p: Floats, corners: Indices) -> Bools:
     result = np.empty(len(corners), dtype=bool)
     for block in row_blocks(len(corners), 1):
         a, b, c = (p[nodes] for nodes in corners[block].T)
-        one, two, three = b - a, c - a, c - b
+        one = b - a
+        two = c - a
+        three = c - b
         longest = np.maximum(np.maximum(dot(one, one), dot(two, two)), dot(three, three))
         result[block] = norm(cross(one, two)) > FLAT_TRIANGLE * longest
     return result
@@ -46,8 +48,12 @@ def nodal_means(
     Faces with up to K corners, (M, K), have -1 for missing ones. Values that are NaN, or not
     ``known`` (M,), have no weight; a node without values has NaN.
     """
-    at, face = triangles.ravel(), np.repeat(np.arange(len(triangles)), triangles.shape[1])
-    weights = areas if known is None else np.where(known, areas, 0.0)
+    at = triangles.ravel()
+    face = np.repeat(np.arange(len(triangles)), triangles.shape[1])
+    if known is None:
+        weights = areas
+    else:
+        weights = np.where(known, areas, 0.0)
     present = at >= 0
     face = face[present]
     summed = partial(sums_at, at[present], count=nodes, of=face, weights=weights[face])
@@ -66,7 +72,8 @@ def known_means(values: Floats, summed: Callable[[Floats], Floats]) -> Floats:
     """Return means (n, ...) of finite values (N, ...), which are summed; NaN without any."""
     flat = values.reshape(len(values), -1)
     finite = np.asarray(np.isfinite(flat).all(axis=1, keepdims=True))
-    sums, total = summed(np.where(finite, flat, 0.0)), summed(finite.astype(np.float64))
+    sums = summed(np.where(finite, flat, 0.0))
+    total = summed(finite.astype(np.float64))
     means = np.divide(sums, total, out=np.full_like(sums, np.nan), where=total > 0)
     return np.asarray(means.reshape(-1, *values.shape[1:]))
 
@@ -82,7 +89,8 @@ def _edge_keys(triangles: Indices) -> Indices:
     count = np.int64(triangles.max(initial=0)) + 1
     keys = np.empty(triangles.shape, dtype=np.int64)
     for corner in range(3):
-        begin, end = triangles[:, corner - 2], triangles[:, corner - 1]
+        begin = triangles[:, corner - 2]
+        end = triangles[:, corner - 1]
         keys[:, corner] = np.minimum(begin, end) * count + np.maximum(begin, end)
     return keys.ravel()
 
@@ -224,7 +232,8 @@ def neighbours(points: Floats, triangles: Indices) -> Indices:
     counts = np.diff(np.append(starts, len(ordered)))
     result = np.full(len(keys), -1, dtype=np.intp)
     shared = starts[counts == 2]
-    near, far = order[shared], order[shared + 1]
+    near = order[shared]
+    far = order[shared + 1]
     result[near], result[far] = far // 3, near // 3
     crowded = counts > 2
     if crowded.any():
@@ -244,7 +253,8 @@ def _straightest(
         sides = order[starts[counts == count][:, None] + np.arange(count)]
         triangle, corner = np.divmod(sides[:, :1], 3)
         begin, end = (points[triangles[triangle, (corner + k) % 3]] for k in (1, 2))
-        along, away = end - begin, points[triangles.reshape(-1)[sides]] - begin
+        along = end - begin
+        away = points[triangles.reshape(-1)[sides]] - begin
         share = dot(away, along) / np.maximum(dot(along, along), np.finfo(float).tiny)
         away -= share[..., None] * along
         away /= np.maximum(norm(away), np.finfo(float).tiny)[..., None]

@@ -45,7 +45,9 @@ class TriangleSurface(NodeSurface):
     def __init__(
         self, points: Floats, triangles: Indices, valid: Bools, *, on_globe: bool = False
     ) -> None:
-        self.points, self.triangles, self.valid = points, triangles, valid
+        self.points = points
+        self.triangles = triangles
+        self.valid = valid
         self.on_globe = on_globe
         self.periodic = (False, False)
         self.has_position = np.ones(valid.shape, dtype=bool)
@@ -142,7 +144,9 @@ class TriangleSurface(NodeSurface):
         along = self.crosses @ normal
         if along.min() >= 0:
             return normal
-        return -normal if along.max() <= 0 else None
+        if along.max() <= 0:
+            return -normal
+        return None
 
     @cached_property
     def normals(self) -> Floats:
@@ -154,7 +158,8 @@ class TriangleSurface(NodeSurface):
         corners = self.points[0][self.triangles]
         first, second = (np.roll(corners, by, axis=1) - corners for by in (-1, 1))
         angle = np.arctan2(length, dot(first, second))
-        at, cell = self.triangles.ravel(), np.repeat(np.arange(len(corners)), 3)
+        at = self.triangles.ravel()
+        cell = np.repeat(np.arange(len(corners)), 3)
         total = sums_at(at, unit, self.shape[1], cell, angle.ravel())
         size = np.linalg.norm(total, axis=1, keepdims=True)
         away = np.divide(total, size, out=np.zeros_like(total), where=size > 1e-12)
@@ -227,7 +232,8 @@ class TriangleSurface(NodeSurface):
     def corners_at(self, index: Floats) -> tuple[Indices, Floats]:
         """Return nodes (..., 3) and their shares (..., 3) at positions (..., 2) as (i, j)."""
         number = np.clip(np.floor(index[..., 1]).astype(np.intp), 0, len(self.triangles) - 1)
-        second, third = index[..., 1] - number, index[..., 0]
+        second = index[..., 1] - number
+        third = index[..., 0]
         return self.triangles[number], np.stack([1 - second - third, second, third], axis=-1)
 
     def index_of(self, number: Indices, weights: Floats) -> Floats:
@@ -255,7 +261,8 @@ class TriangleSurface(NodeSurface):
         unit = self.crosses[triangle]
         unit = unit / np.maximum(np.linalg.norm(unit, axis=1, keepdims=True), np.finfo(float).tiny)
         count = np.bincount(at)
-        components, speed = flow.components.copy(), flow.speed.copy()
+        components = flow.components.copy()
+        speed = flow.speed.copy()
         for step in range(len(velocity)):
             v = velocity[step, 0, nodes]
             within = np.linalg.norm(v - np.sum(v * unit, axis=1, keepdims=True) * unit, axis=1)
@@ -275,9 +282,13 @@ class TriangleSurface(NodeSurface):
         """Return the normal share of a velocity (1, N, 3), sampled at some of the triangles."""
         corners = self.triangles[self.cells]
         corners = corners[:: -(-len(corners) // MOST_MEASURED)]
-        normal, flow = triangle_normals(self.points[0], corners), velocity[0, corners].mean(axis=1)
-        out, total = dot(flow, normal) / norm(normal), np.vdot(flow, flow)
-        return float(np.sqrt(min(np.vdot(out, out) / total, 1.0))) if total > 0 else 0.0
+        normal = triangle_normals(self.points[0], corners)
+        flow = velocity[0, corners].mean(axis=1)
+        out = dot(flow, normal) / norm(normal)
+        total = np.vdot(flow, flow)
+        if total > 0:
+            return float(np.sqrt(min(np.vdot(out, out) / total, 1.0)))
+        return 0.0
 
     @cached_property
     def sharp(self) -> Bools:

@@ -106,7 +106,8 @@ def block_roughness(nodes: Nodes | FlowField, cells: int) -> Floats:
         extent = _extent(steps[0][nodes.valid])
         values.append((steps[0][..., None], np.full(speed.shape, extent)))
     shape = [max(-(-(n // 2) // cells), 1) for n in speed.shape]
-    greatest, longest = np.zeros(shape), np.full(shape, np.finfo(float).tiny)
+    greatest = np.zeros(shape)
+    longest = np.full(shape, np.finfo(float).tiny)
     for row in range(shape[0]):
         rows = slice(2 * cells * row, 2 * cells * (row + 1) + 1)
         arrays = nodes.points[rows], nodes.valid[rows], [(v[rows], s[rows]) for v, s in values]
@@ -135,9 +136,11 @@ def _errors(
         return [array[k : k + 2 * count : 2] for k in (0, 1, 2)]
 
     before, middle, after = lines(points)
-    one, other = norm(middle - before), norm(after - middle)
+    one = norm(middle - before)
+    other = norm(after - middle)
     share = np.divide(one, one + other, where=one + other > 0, out=np.full_like(one, 0.5))
-    length, errors = norm(after - before), np.zeros(share.shape)
+    length = norm(after - before)
+    errors = np.zeros(share.shape)
     # A scalar that is NaN at some nodes, or a size of zero, gives NaN or infinity.
     with np.errstate(invalid="ignore", divide="ignore"):
         for array, size in [(points, None), *values]:

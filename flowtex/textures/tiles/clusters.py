@@ -76,7 +76,8 @@ class Clusters:
             triangles = triangles.copy()
             triangles[surface.flipped] = triangles[surface.flipped, ::-1]
         if not surface.cells.all():
-            triangles, crosses = triangles[surface.cells], crosses[surface.cells]
+            triangles = triangles[surface.cells]
+            crosses = crosses[surface.cells]
         around = np.repeat(np.arange(len(triangles)), 3)
         places = surface.places
         joined = places[triangles]
@@ -107,7 +108,8 @@ class Clusters:
         places = first[at]
         number = np.where(self.number >= 0, cluster[self.number], -1)
         kept = cluster >= 0
-        sides, border = np.zeros(count), np.zeros(count, dtype=bool)
+        sides = np.zeros(count)
+        border = np.zeros(count, dtype=bool)
         part, edge, face = np.zeros((3, count), dtype=np.intp)
         sides[cluster[kept]] = 2 * self.sides[kept]
         border[cluster[kept]] = self.border[kept]
@@ -117,7 +119,8 @@ class Clusters:
         normals = sums_at(places[cluster[kept]], self.normals[kept], count)[places]
         field = _averaged(self.whole, number, places, corners)
         kept = _untangled(field.points[0], corners, normals, border)
-        corners, cells = corners[kept], self.cells[cells[kept]]
+        corners = corners[kept]
+        cells = self.cells[cells[kept]]
         # A cell has the value of one of those in its place: means may be of none, such as a mark.
         flat = {name: self.field.scalars[name][:, :, cells] for name in field.on_cells}
         field = replace(field, triangles=corners, scalars={**field.scalars, **flat})
@@ -174,24 +177,29 @@ class Clusters:
 
     def _compact(self, cluster: Indices) -> Indices:
         """Return clusters (n,) in which each node belongs to the nearest one beside it."""
-        points, count = self.field.points[0], int(cluster.max()) + 1
+        points = self.field.points[0]
+        count = int(cluster.max()) + 1
         center = sums_at(cluster, points, count) / np.bincount(cluster)[:, None]
         normal = sums_at(cluster, self.normals, count)
         away = points - center[cluster]
         distances = np.einsum("nc,nc->n", away, away)
         parts = []
         for k in range(3):
-            node, beside = self.triangles[:, k - 1], self.triangles[:, k]
+            node = self.triangles[:, k - 1]
+            beside = self.triangles[:, k]
             candidate = cluster[beside]
             alike = self.border[node] == self.border[beside]
             alike &= self.edge[node] == self.edge[beside]
             other = np.flatnonzero((cluster[node] != candidate) & alike)
-            node, candidate = node[other], candidate[other]
+            node = node[other]
+            candidate = candidate[other]
             # Column by column, which is several times as fast.
             along = zip(points.T, center.T, strict=True)
             gap = sum((column[node] - middle[candidate]) ** 2 for column, middle in along)
             nearer = np.flatnonzero(gap < distances[node])
-            node, candidate, gap = node[nearer], candidate[nearer], gap[nearer]
+            node = node[nearer]
+            candidate = candidate[nearer]
+            gap = gap[nearer]
             facing = np.einsum("nc,nc->n", self.normals[node], normal[candidate]) > 0
             parts.append((node[facing], candidate[facing], gap[facing]))
         node, candidate, gap = (np.concatenate(part) for part in zip(*parts, strict=True))
@@ -252,7 +260,8 @@ def _edges(face: Indices, places: Indices) -> Indices:
     """Return numbers from 0, (n,), the same for nodes that lie in or between the same faces."""
     if not face.any():
         return face
-    least, most = face.copy(), face.copy()
+    least = face.copy()
+    most = face.copy()
     np.minimum.at(least, places, face)
     np.maximum.at(most, places, face)
     kinds = np.stack([least, most, np.bincount(places, minlength=len(face))], axis=-1)[places]
@@ -264,7 +273,8 @@ def _averaged(field: FlowField, number: Indices, places: Indices, triangles: Ind
 
     All nodes (n,) at the ``places`` of others, (n,), have one position.
     """
-    kept, count = np.flatnonzero(number >= 0), int(number.max(initial=-1)) + 1
+    kept = np.flatnonzero(number >= 0)
+    count = int(number.max(initial=-1)) + 1
     summed = partial(sums_at, number[kept], count=count, of=kept)
     placed = partial(sums_at, places[number[kept]], count=count, of=kept)
 
@@ -310,7 +320,8 @@ def _untangled(points: Floats, triangles: Indices, normals: Floats, border: Bool
             break
         changed = np.flatnonzero(np.any([moved[triangles[:, k]] for k in range(3)], axis=0))
         near = triangles[changed]
-        total, count = np.zeros_like(points), np.zeros(len(points))
+        total = np.zeros_like(points)
+        count = np.zeros(len(points))
         for by in (1, 2):
             other = points[np.roll(near, by, axis=1).ravel()]
             total += sums_at(near.ravel(), other, len(points))

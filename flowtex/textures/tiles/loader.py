@@ -69,8 +69,11 @@ class Tile:
 
     def take(self, step: int) -> Halves:
         """Return the layers of a destination time, without keeping them."""
-        layers, self.layers[step] = self.layers.get(step), None
-        return self.make(step) if layers is None else layers
+        layers = self.layers.get(step)
+        self.layers[step] = None
+        if layers is None:
+            return self.make(step)
+        return layers
 
 
 class TileLoader:
@@ -94,7 +97,9 @@ class TileLoader:
         self.pyramid = pyramid
         self.errors: dict[TileKey, Exception] = {}
         self._failed: dict[TileKey, float] = {}
-        self._prepare, self._notify, self._clock = prepare, notify, clock
+        self._prepare = prepare
+        self._notify = notify
+        self._clock = clock
         self._tiles: ByteCache[TileKey, Tile] = ByteCache(budget)
         #: Times of the last request of each tile, and of any.
         self._requests: dict[TileKey, float] = {}
@@ -116,7 +121,9 @@ class TileLoader:
         """Return a tile that has the layers of these destination times, or ``None``."""
         tile = self._tiles.peek(key)
         ready = tile is not None and all(step in tile.layers for step in steps)
-        return tile if ready else None
+        if ready:
+            return tile
+        return None
 
     def has_failed(self, key: TileKey) -> bool:
         """Return whether a tile failed recently; errors of earlier failures are dropped."""
@@ -166,7 +173,10 @@ class TileLoader:
         """Wait for the tiles that were requested."""
         while True:
             with self._lock:
-                futures = [f for (key, _), f in self._running.items() if self._is_requested(key)]
+                futures = []
+                for (key, _), f in self._running.items():
+                    if self._is_requested(key):
+                        futures.append(f)
             if not futures:
                 return
             wait(futures)  # some may have been submitted again by now

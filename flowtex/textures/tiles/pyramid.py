@@ -122,9 +122,17 @@ class Pyramid:
         nodes: tuple[int, int] | None = None,
         depth: int | None = None,
     ) -> None:
-        self.field, self.parameter, self.lines = field, parameter, lines
-        self.nodes = field.shape if nodes is None else nodes
-        self.depth = root_level(self.nodes) if depth is None else depth
+        self.field = field
+        self.parameter = parameter
+        self.lines = lines
+        if nodes is None:
+            self.nodes = field.shape
+        else:
+            self.nodes = nodes
+        if depth is None:
+            self.depth = root_level(self.nodes)
+        else:
+            self.depth = depth
         self._lock = ProcessLock()
         self._places: dict[int, Floats] = {}
         rows, columns = map(np.arange, field.shape)
@@ -173,7 +181,8 @@ class Pyramid:
         """
         geometry = self.root_geometry
         assert isinstance(geometry, SurfaceGeometry)
-        size, before = np.array(geometry.size[::-1]), geometry.padding[::-1]
+        size = np.array(geometry.size[::-1])
+        before = geometry.padding[::-1]
         cell = (places[:, :2] * size - 0.5 - before) * (1 << self.depth) // BLOCK_CELLS
         column, row = np.clip(cell.astype(int), 0, np.array(self.blocks[::-1]) - 1).T
         visible = np.zeros(self.blocks, dtype=bool)
@@ -211,7 +220,11 @@ class Pyramid:
         for coarser in range(max(level - 1, 1), level + 1):
             if coarser not in self._roughness:
                 lines = map(np.arange, self.shape(coarser - 1))
-                nodes = self.field if coarser == 1 else self._nodes(coarser - 1, *lines)
+                nodes: FlowField | Nodes
+                if coarser == 1:
+                    nodes = self.field
+                else:
+                    nodes = self._nodes(coarser - 1, *lines)
                 self._roughness[coarser] = block_roughness(nodes, BLOCK_CELLS)
             errors = self._roughness[coarser]
             if coarser < level:
@@ -251,7 +264,11 @@ class Pyramid:
                 range(2 * at, min(2 * at + 2, count))
                 for at, count in zip(key[1:], counts, strict=True)
             )
-        return [TileKey(level, j, i) for j in rows for i in columns]
+        found = []
+        for j in rows:
+            for i in columns:
+                found.append(TileKey(level, j, i))
+        return found
 
     def groups(self, keys: Sequence[TileKey]) -> list[list[TileKey]]:
         """Return tiles in groups, each traced in one window with fewer nodes than theirs."""
@@ -271,7 +288,8 @@ class Pyramid:
 
     def _nodes_of(self, keys: Sequence[TileKey]) -> int:
         """Return about how many nodes are traced for tiles of a level."""
-        (first, last), halo = self._box(keys), int(HALO_SHARE * PATH_CELLS) + HALO_SPARE
+        (first, last) = self._box(keys)
+        halo = int(HALO_SHARE * PATH_CELLS) + HALO_SPARE
         shape = self.shape(keys[0].level)
         return math.prod(
             min(b - a + 2 * halo, n) for a, b, n in zip(first, last, shape, strict=True)
@@ -295,7 +313,10 @@ class Pyramid:
             made = self.region(keys, widening)
             if widening == WIDENINGS[-1]:
                 break
-            shown = [textures for textures in made.values() if textures is not None]
+            shown = []
+            for textures in made.values():
+                if textures is not None:
+                    shown.append(textures)
             steps = [step for step in steps if any(is_cut(part, step) for part in shown)]
             if not steps:
                 break
@@ -441,7 +462,8 @@ class Pyramid:
 
     def _nodes(self, level: int, rows: Indices, columns: Indices) -> Nodes:
         """Return the data at some lines of a level, by their numbers within it."""
-        stored, field = self._level(level), self.field
+        stored = self._level(level)
+        field = self.field
         at = np.ix_(stored.rows[rows], stored.columns[columns])
         within = np.ix_(rows, columns)
         return Nodes(
@@ -465,7 +487,8 @@ class Pyramid:
         """Return a level, making those before it first."""
         with self._lock:
             while len(self._levels) <= level:
-                fine, picks = self._levels[-1], self.line_numbers(len(self._levels))
+                fine = self._levels[-1]
+                picks = self.line_numbers(len(self._levels))
                 valid = self.field.valid[np.ix_(fine.rows, fine.columns)]
                 rows, columns = (
                     beside(np.searchsorted(lines, new), len(lines), closed=closed)
@@ -484,17 +507,24 @@ def is_cut(textures: TextureSet, step: int) -> bool:
     """
     if not isinstance(textures.geometry, SurfaceGeometry):
         return False
-    store, field = textures.store, textures.geometry.field
+    store = textures.store
+    field = textures.geometry.field
     needed = NEEDED_SHARE * textures.longest / textures.pace
-    first, last = step, step + 1
+    first = step
+    last = step + 1
     if not store.streamlines:
         near = np.flatnonzero(np.abs(field.times - field.times[step]) <= needed)
-        first, last = max(int(near[0]) - 1, 0), min(int(near[-1]) + 2, len(field.times))
+        first = max(int(near[0]) - 1, 0)
+        last = min(int(near[-1]) + 2, len(field.times))
     moment = field.at_steps(range(first, last))
     j, i = (np.arange(n)[p] for n, p in zip(field.shape, textures.geometry.texels, strict=True))
     # The greatest velocity bounds the lengths of all paths.
-    flow, is_open = moment.index_velocity, np.array(textures.grid.open_sides)
-    speed = np.maximum(flow.speed, np.finfo(float).tiny) if store.parameter == "arclength" else 1.0
+    flow = moment.index_velocity
+    is_open = np.array(textures.grid.open_sides)
+    if store.parameter == "arclength":
+        speed = np.maximum(flow.speed, np.finfo(float).tiny)
+    else:
+        speed = 1.0
     rate = np.abs(np.asarray(flow.components)) / np.asarray(speed)[..., None]
     room = np.array([(k[0], n - 1 - k[-1]) for k, n in zip((j, i), field.shape, strict=True)])
     if (room > needed * rate.max(axis=(0, 1, 2))[::-1, None])[is_open].all():
@@ -507,7 +537,8 @@ def is_cut(textures: TextureSet, step: int) -> bool:
         )
         outside = np.zeros(len(start), dtype=bool)
         for axis, (before, after) in enumerate(textures.grid.open_sides):
-            at, end = followed.positions[0, :, 1 - axis], field.shape[axis] - 1
+            at = followed.positions[0, :, 1 - axis]
+            end = field.shape[axis] - 1
             outside |= (before & (at < 0)) | (after & (at > end))
         if (outside & (followed.reach < needed)).sum() > MOST_CUT_SHARE * len(start):
             return True
@@ -531,7 +562,9 @@ def level_shape(nodes: tuple[int, int], level: int) -> tuple[int, int]:
 def level_lines(count: int, level: int) -> Indices:
     """Return every 2^level-th of this many lines, and the last one."""
     lines = np.arange(0, count, 1 << level)
-    return lines if lines[-1] == count - 1 else np.append(lines, count - 1)
+    if lines[-1] == count - 1:
+        return lines
+    return np.append(lines, count - 1)
 
 
 def _reach(points: Floats, valid: Bools) -> tuple[float, tuple[int, int]]:
@@ -562,7 +595,9 @@ def _ring(near: int, count: int) -> Indices:
     They are all of those up to ``near``. Beyond, the spacing doubles with the distance from the
     tile: a path comes so far only where lines are so close together that it is at most a long cell.
     """
-    last, ahead, step = near + count - 1, [near], 1
+    last = near + count - 1
+    ahead = [near]
+    step = 1
     while ahead[-1] + 1.5 * step <= last / 2:
         ahead.append(ahead[-1] + step)
         step = 1 << int(math.log2((ahead[-1] - near + BLOCK_CELLS) / PATH_CELLS))

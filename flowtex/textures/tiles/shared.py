@@ -47,7 +47,11 @@ def has_pyramid(field: FlowField) -> bool:
 
 def shared_pyramid(field: FlowField, parameter: str, lines: str = "pathlines") -> Pyramid:
     """Return the pyramid of a field, one for all that show the field at the same time."""
-    kind = Pyramid if field.triangles is None else TrianglePyramid
+    kind: type[Pyramid]
+    if field.triangles is None:
+        kind = Pyramid
+    else:
+        kind = TrianglePyramid
     make = _attached.get(field, kind)
     # A pyramid keeps its field alive, so the id stays unique.
     key = (id(field), parameter, lines)
@@ -72,7 +76,8 @@ def usual_ends(whole: tuple[float, float], robust: tuple[float, float]) -> tuple
 
     Where nearly all values are the same, it is the whole range.
     """
-    (least, most), (low, high) = whole, robust
+    (least, most) = whole
+    (low, high) = robust
     tail = LONG_TAIL * (high - low)
     if tail < LEAST_SHARE * (most - least):
         return whole
@@ -93,19 +98,27 @@ def range_rules() -> dict[str, object]:
 def widened(ends: tuple[float, float] | None, field: FlowField, name: str) -> tuple[float, float]:
     """Return a range for colours, also for equal values up to rounding, and for none."""
     halves = name == "speed" and name not in field.scalars and has_pyramid(field)
-    same = SAME_HALVES_SHARE if halves else SAME_VALUE_SHARE
+    if halves:
+        same = SAME_HALVES_SHARE
+    else:
+        same = SAME_VALUE_SHARE
     if ends is None:
         return 0.0, 1.0
     low, high = ends
     size = max(abs(low), abs(high))
     if high - low > same * size:
         return low, high
-    return (low - WIDENED_SHARE * size, high + WIDENED_SHARE * size) if size > 0 else (0.0, 1.0)
+    if size > 0:
+        return (low - WIDENED_SHARE * size, high + WIDENED_SHARE * size)
+    return (0.0, 1.0)
 
 
 def drawn_speeds(field: FlowField, root: FlowField) -> Floats:
     """Return speeds of valid nodes, (T, N); in space, where hardly any flow leaves the surface."""
-    steps = field.index_velocity.speed if root.leaves_surface else norm(field.velocity)
+    if root.leaves_surface:
+        steps = field.index_velocity.speed
+    else:
+        steps = norm(field.velocity)
     return np.asarray(steps)[:, field.valid] * field.speed_scale
 
 
@@ -119,7 +132,9 @@ def coarsened_field(field: FlowField, nodes: int) -> FlowField:
         return field
     if field.triangles is not None:
         has_levels = field.valid.size > triangle_pyramid.ROOT_NODES
-        return field if has_levels else levels_of(field, nodes)[-1].field
+        if has_levels:
+            return field
+        return levels_of(field, nodes)[-1].field
     share = np.sqrt(nodes / field.valid.size)
     rows, columns = (
         np.unique(np.rint(np.linspace(0, n - 1, max(int(n * share), min(n, 8)))).astype(int))

@@ -38,12 +38,19 @@ class Structure:
     """Critical points and separatrices of a field. All methods may be called from any thread."""
 
     def __init__(self, field: FlowField) -> None:
-        self._whole, self._field = field, field
+        self._whole = field
+        self._field = field
         # A large field is coarsened for the search.
         if field.valid.size > SEARCHED_NODES:
             has_levels = has_pyramid(field) or field.triangles is not None
-            pyramid = shared_pyramid(field, "arclength", "streamlines") if has_levels else None
-            self._field = pyramid.root if pyramid else coarsened_field(field, SEARCHED_NODES)
+            if has_levels:
+                pyramid = shared_pyramid(field, "arclength", "streamlines")
+            else:
+                pyramid = None
+            if pyramid:
+                self._field = pyramid.root
+            else:
+                self._field = coarsened_field(field, SEARCHED_NODES)
         self._lock = ProcessLock()
         self._all: tuple[int, CriticalPoints] | None = None
         self._points: OrderedDict[int, CriticalPoints] = OrderedDict()
@@ -69,7 +76,8 @@ class Structure:
             count, lines = self._lines.get(step, (0, Separatrices()))
             if count < saddles:
                 length = DRAWN_EXTENTS * self._field.surface.extent
-                field, points = self._field.at_step(step), self._all_points(step)
+                field = self._field.at_step(step)
+                points = self._all_points(step)
                 lines = separatrices_between(field, points, length, saddles, most=DRAWN_POINTS)
                 _keep(self._lines, step, (saddles, lines))
             ordered = CriticalPoints(

@@ -127,11 +127,18 @@ class TrianglePyramid(Pyramid):
 
     def children(self, key: TileKey | None) -> list[TileKey]:
         """Return tiles of the next level that cover a tile, or the root for ``None``."""
-        level = self.depth if key is None else key.level
+        if key is None:
+            level = self.depth
+        else:
+            level = key.level
         if level == 0:
             return []
         row, column = (0, 0) if key is None else (2 * at for at in key[1:])
-        return [TileKey(level - 1, row + j, column + i) for j in (0, 1) for i in (0, 1)]
+        found = []
+        for j in (0, 1):
+            for i in (0, 1):
+                found.append(TileKey(level - 1, row + j, column + i))
+        return found
 
     @cached_property
     def root_geometry(self) -> TriangleGeometry:
@@ -256,7 +263,8 @@ class TrianglePyramid(Pyramid):
     @cached_property
     def _extents(self) -> tuple[Floats, Floats, Floats]:
         """Corners of the content of the blocks of level 0, and the size of cells there."""
-        clusters, parts = self._clusters[0], self._members(0)
+        clusters = self._clusters[0]
+        parts = self._members(0)
         filled = np.array([len(part) > 0 for part in parts])
         triangles = clusters.triangles[np.concatenate(parts)]
         first = np.cumsum([0, *(len(part) for part in parts)])[:-1][filled]
@@ -271,7 +279,8 @@ class TrianglePyramid(Pyramid):
             sides = np.split(longest, first[1:])
             # At the next level the size is twice as much, a share of the bins.
             size[filled] = [BIN_SHARE / 2 * _most(part) for part in sides]
-        low, high = low[:, :3], high[:, :3]
+        low = low[:, :3]
+        high = high[:, :3]
         return np.maximum(low, inner[0]), np.minimum(high, inner[1]), size
 
     def _stretch(self, level: int, nodes: Indices) -> float:
@@ -286,8 +295,10 @@ class TrianglePyramid(Pyramid):
     def _around(self, level: int, nodes: Indices, width: float) -> Indices:
         """Return triangles of a level, among them all within ``width`` of some nodes."""
         clusters = self._clusters[level]
-        points, reach = self._points(level), np.array([width, width, width, 0])
-        low, high = points[nodes].min(axis=0) - reach, points[nodes].max(axis=0) + reach
+        points = self._points(level)
+        reach = np.array([width, width, width, 0])
+        low = points[nodes].min(axis=0) - reach
+        high = points[nodes].max(axis=0) + reach
         near = self._boxes.members(low[None], high[None], self._steps(level))
         parts = self._members(level)
         nearby = np.concatenate([part for part, hit in zip(parts, near, strict=True) if len(hit)])
@@ -312,8 +323,10 @@ def _lags(size: Floats, nodes: Bools, longest: float) -> tuple[Floats, Floats]:
 
 def _window(level: Clusters, members: Indices) -> tuple[FlowField, Indices]:
     """Return a field of some triangles, and the numbers of nodes in it, -1 for the others."""
-    field, triangles = level.field, level.triangles[members]
-    nodes, cells = np.unique(triangles), level.cells[members]
+    field = level.field
+    triangles = level.triangles[members]
+    nodes = np.unique(triangles)
+    cells = level.cells[members]
     number = np.full(field.shape[1], -1, dtype=np.intp)
     number[nodes] = np.arange(len(nodes))
     part = replace(
@@ -376,9 +389,11 @@ class Boxes:
 
     def bounds(self, steps: int) -> tuple[Floats, Floats]:
         """Return lower and upper corners of the boxes of a depth, (4^steps, 4) each."""
-        low, high = np.full((1, 4), -np.inf), np.full((1, 4), np.inf)
+        low = np.full((1, 4), -np.inf)
+        high = np.full((1, 4), np.inf)
         for axes, values in zip(self.axes[: 2 * steps], self.values, strict=False):
-            low, high = np.repeat(low, 2, axis=0), np.repeat(high, 2, axis=0)
+            low = np.repeat(low, 2, axis=0)
+            high = np.repeat(high, 2, axis=0)
             number = np.arange(len(axes))
             high[2 * number, axes] = values
             low[2 * number + 1, axes] = values
@@ -389,7 +404,8 @@ def _cut(points: Floats) -> tuple[int, float]:
     """Return axis and value of a cut, with points on both sides unless all coincide."""
     if not len(points):
         return 0, 0.0
-    low, high = points.min(axis=0), points.max(axis=0)
+    low = points.min(axis=0)
+    high = points.max(axis=0)
     axis = int(np.argmax((high - low)[:3]))
     if high[3] > low[3]:
         part = np.unique(points[:, 3], return_inverse=True)[1]

@@ -265,7 +265,10 @@ def _on_grid(field: FlowField) -> list[CriticalPoint]:
     j = j[cell]
     i = i[cell]
     (s, t) = place.T
-    at = [u[j + a, i + b] for a in (0, 1) for b in (0, 1)]
+    at = []
+    for a in (0, 1):
+        for b in (0, 1):
+            at.append(u[j + a, i + b])
     by_i = (at[1] - at[0]) * (1 - t[:, None]) + (at[3] - at[2]) * t[:, None]
     by_j = (at[2] - at[0]) * (1 - s[:, None]) + (at[3] - at[1]) * s[:, None]
     gradient = np.stack([by_i, by_j], axis=-1)
@@ -516,7 +519,9 @@ def _ring_index(field: FlowField, point: CriticalPoint) -> int:
 
 def _with_strength(points: list[CriticalPoint], field: FlowField) -> list[CriticalPoint]:
     columns = field.shape[1]
-    nodes = [int(j * columns + i) for j, i in (field.surface.node_near(p.index) for p in points)]
+    nodes = []
+    for j, i in (field.surface.node_near(p.index) for p in points):
+        nodes.append(int(j * columns + i))
     signs = np.array([point.poincare_index for point in points], dtype=np.intp)
     steepness = np.array([abs(np.prod(point.eigenvalues)) for point in points])
     # A point of index 0 needs no partner to vanish.

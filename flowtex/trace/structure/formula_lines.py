@@ -143,10 +143,9 @@ def _starts(rates: Rates) -> tuple[Floats, Floats, Floats]:
     """
     sides = np.ptp(rates.ends, axis=1)
     counts = np.maximum(np.round(CELLS * sides / sides.max()), LEAST_CELLS).astype(int)
-    lines = [
-        low + side / n * np.arange(n + 1)
-        for low, side, n in zip(rates.ends[:, 0], sides, counts, strict=True)
-    ]
+    lines = []
+    for low, side, n in zip(rates.ends[:, 0], sides, counts, strict=True):
+        lines.append(low + side / n * np.arange(n + 1))
     nodes = np.stack(np.meshgrid(*lines), axis=-1)
     values = rates.at(nodes.reshape(-1, 2)).reshape(nodes.shape)
     values[~np.isfinite(values)] = np.nan

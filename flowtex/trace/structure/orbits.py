@@ -223,11 +223,19 @@ class _Rays:
         end = self._returns(index, ray[kept], forward=forward, lines=lines)
         if self._rates is not None:
             found = (self._exact(self._rates, line, forward=forward) for line in lines)
-            return [orbit for orbit in found if orbit is not None]
+            result = []
+            for orbit in found:
+                if orbit is not None:
+                    result.append(orbit)
+            return result
         # Where lines jump from one side to the other there is no orbit.
         closed = np.abs(end - places) < CLOSED_CELLS * self._cell[ray[kept]]
         turns = [lines[n] for n in np.flatnonzero(closed)]
-        return [self._orbit(turn, stable=forward) for turn in turns if self._is_isolated(turn)]
+        made = []
+        for turn in turns:
+            if self._is_isolated(turn):
+                made.append(self._orbit(turn, stable=forward))
+        return made
 
     def _exact(self, rates: Rates, turn: Floats, *, forward: bool) -> ClosedOrbit | None:
         """Return the orbit of a formula near a turn, indices (N, 2)."""

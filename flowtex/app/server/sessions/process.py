@@ -116,7 +116,10 @@ class ProcessSession(Session):
             headers={n: request.headers[n] for n in REQUEST_HEADERS if n in request.headers},
             data=request.content if request.body_exists else None,
         ) as answer:
-            headers = {key: answer.headers[key] for key in ANSWER_HEADERS if key in answer.headers}
+            headers = {}
+            for key in ANSWER_HEADERS:
+                if key in answer.headers:
+                    headers[key] = answer.headers[key]
             response = web.StreamResponse(status=answer.status, headers=headers)
             await response.prepare(request)
             async for chunk in answer.content.iter_chunked(CHUNK_BYTES):
