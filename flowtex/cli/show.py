@@ -40,7 +40,7 @@ FIRST_LOOKS: dict[str, tuple[float, tuple[float, ...] | None]] = {
 #: Options that change the field of a file; the others choose a part of it.
 FIELD_OPTIONS = (
     *("slice", "contour", "periodic", "time", "sign_free", "preference"),
-    *("projection", "globe", "level", "sel", "isel", "mask", "components", "direction"),
+    *("projection", "globe", "level", "sel", "isel", "mask", "components", "direction", "max_edge"),
 )
 
 FILE = Annotated[

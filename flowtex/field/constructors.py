@@ -166,7 +166,7 @@ class FieldConstructors:
             Numbers count from 0 and include only blocks with cells.
         components
             As for :meth:`from_pyvista` and :meth:`from_xarray`.
-        projection, globe, level, sel, isel, mask, direction
+        projection, globe, level, sel, isel, mask, direction, max_edge
             As for :meth:`from_xarray`, for gridded data and models.
         uncertainty
             As for :meth:`from_xarray`; of a mesh a scalar.
@@ -254,6 +254,10 @@ class FieldConstructors:
             Name of the direction of a speed, as in ``vectors="ff", direction="dd"``. Its names and
             attributes decide whether the flow comes from there or goes there, clockwise from north,
             or whether it is an angle counterclockwise from x.
+        max_edge
+            Longest edge of the triangles that join scattered points, in the unit of the positions,
+            on the Earth in kilometres, or with a unit, as in ``"50 km"``. By default triangles that
+            are much larger than others nearby are left out.
         **selection
             The same as ``sel``, such as ``level=500`` or ``time="2000-01-02"``. ``time`` and
             ``level`` select along these axes whatever their names. By default all times, the level

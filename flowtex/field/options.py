@@ -21,7 +21,7 @@ from flowtex.errors import FieldError
 #: Description of all other arguments in docstrings.
 SETTINGS_TEXT = "Any setting of :class:`~flowtex.Settings`, such as ``samples=25``."
 #: Arguments for geospatial data only.
-OF_EARTH = ("projection", "globe", "level", "sel", "isel", "mask", "direction")
+OF_EARTH = ("projection", "globe", "level", "sel", "isel", "mask", "direction", "max_edge")
 #: Arguments for meshes only.
 OF_MESHES = ("plane", "slice", "contour", "block", "times", "periodic", "sign_free", "preference")
 OF_DATASETS = ("vectors", *OF_EARTH, "components", "uncertainty")  #: Arguments for datasets.
@@ -99,6 +99,12 @@ class FieldOptions:
         "Variable of a dataset with the direction of a speed, which ``vectors`` names. Its "
         "attributes decide whether it is where the flow comes from or goes to, clockwise from "
         "north, or an angle counterclockwise from x.",
+    )
+    max_edge: float | str | None = option(
+        None,
+        "Longest edge of the triangles between scattered points, in the unit of the positions, on "
+        "the Earth in kilometres, or with a unit, such as ``50 km``; by default triangles that are "
+        "much larger than others nearby are left out.",
     )
     uncertainty: ArrayLike | None = option(
         None,

@@ -55,6 +55,7 @@ _SPECIAL = {
     "isel": Form(
         read=named_texts(int, "an axis and a whole number, such as number=2"), repeated=True
     ),
+    "max_edge": Form(read=number_or_text),
     "mask": Form(read=lambda text: text if text.lower() not in ("none", "false") else False),
     "scalars": Form(read=or_none(value=False)),
     "component": WHOLE,

@@ -90,6 +90,8 @@ def _field(
     *,
     on_earth: bool = False,
 ) -> FlowField:
+    if options.max_edge is not None and not flow.scattered:
+        raise FieldError("max_edge applies to scattered points, but the arrays are a grid; omit it")
     on_earth = on_earth or options.projection is not None or bool(options.globe)
     if on_earth or flow.scattered or options.components is not None:
         return _labelled_field(flow, options, scalars, on_earth=on_earth)

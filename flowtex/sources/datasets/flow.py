@@ -324,6 +324,7 @@ def read_flow(data: Any, options: FieldOptions, record: Record) -> Flow:
     mesh = find_mesh(datasets)
     if mesh is not None and len(horizontal_dims(one)) > 1:
         mesh = None
+    mesh = _with_max_edge(mesh, options.max_edge)
     if mesh is None:
         one, two = ordered(one, record, "coordinates"), ordered(two, record, "align")
     elif (dims := {horizontal_dims(array) for array in (one, two)}) and len(dims) > 1:
@@ -364,6 +365,18 @@ def _chosen(datasets: Datasets, choice: Choice, options: FieldOptions) -> tuple[
         datasets = Datasets(map(with_lonlat, datasets), datasets.closers, recognised=True)
     one, two = (select.variable(datasets, str(part.name)) for part in (pair.u, pair.v))
     return datasets, replace(pair, u=one, v=two)
+
+
+def _with_max_edge(mesh: Mesh | None, max_edge: float | str | None) -> Mesh | None:
+    """Return a mesh of points whose triangles have no longer edges."""
+    if max_edge is None:
+        return mesh
+    if mesh is not None and mesh.kind == POINTS:
+        return replace(mesh, max_edge=max_edge)
+    kind = "rows and columns of a grid"
+    if mesh is not None:
+        kind = f"a mesh ({mesh.kind})"
+    raise FieldError(f"max_edge applies to scattered points, but these are {kind}; omit it")
 
 
 def _check_surface(pair: Pair) -> None:

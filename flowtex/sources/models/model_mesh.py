@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass
-from functools import cached_property, lru_cache
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -15,6 +15,7 @@ from flowtex.field import units
 from flowtex.field.earth import EARTH_RADIUS, GLOBE, Projection
 from flowtex.field.triangles.triangle_nodes import nodal_means, triangle_normals
 from flowtex.sources.datasets.axes import FACES, NODES
+from flowtex.sources.models.scattered import edge_length, join_points
 from flowtex.sources.reader_errors import values_in
 
 if TYPE_CHECKING:
@@ -39,6 +40,8 @@ class Mesh:
     corners: xr.DataArray | None = None  #: Nodes of each face.
     counts: xr.DataArray | None = None  #: Number of corners of each face, where these differ.
     first: int = 0  #: Index of the first node.
+    #: Longest edge between scattered points, as :func:`edge_length` reads it.
+    max_edge: float | str | None = None
 
     @property
     def dims(self) -> tuple[str, str]:
@@ -87,6 +90,15 @@ class Mesh:
             return units.symbol(unit)
         return ""
 
+    @property
+    def greatest_edge(self) -> float | None:
+        """The longest edge in the unit of the positions, or in metres on the Earth."""
+        if self.max_edge is None:
+            return None
+        if self.is_earth:
+            return edge_length(self.max_edge, "m", default="km")
+        return edge_length(self.max_edge, self.unit, default=self.unit)
+
     @cached_property
     def _raw(self) -> tuple[Floats, Floats]:
         parts = []
@@ -116,7 +128,8 @@ class Mesh:
             b = b * (units.factor(str(self.y.attrs.get("units", "")), self.unit) or 1.0)
         if self.kind == POINTS:
             positions = _positions(a, b, self.is_earth)
-            return a, b, join_points(positions, on_sphere=self.is_earth)
+            most = self.greatest_edge
+            return a, b, join_points(positions, on_sphere=self.is_earth, max_edge=most)
         if self.corners is None:
             return _from_bounds(a, b)
         return a, b, _numbers(self, self.corners, len(a))
@@ -201,7 +214,16 @@ class Mesh:
     def words(self) -> str:
         """Words for the mesh and its size."""
         if self.kind == POINTS:
-            return f"{len(self.a):,} points joined by {len(self.faces):,} triangles"
+            text = f"{len(self.a):,} points joined by {len(self.faces):,} triangles"
+            if self.max_edge is None:
+                return text
+            unit = self.unit
+            if self.is_earth:
+                unit = "km"
+            length = self.max_edge
+            if not isinstance(length, str):
+                length = f"{length:g} {unit}".strip()
+            return f"{text} with edges of up to {length}"
         kinds = {3: "triangles", 4: "quadrilaterals"}
         edges = np.unique((self.faces >= 0).sum(axis=1))
         if len(edges) == 1:
@@ -274,96 +296,3 @@ def _corners_first(faces: AnyArray) -> Indices:
     faces = np.where(repeated, -1, faces)
     order = np.argsort(faces < 0, axis=1, kind="stable")
     return np.asarray(np.take_along_axis(faces, order, axis=1), dtype=np.intp)
-
-
-#: Fewest points of a surface; fewer are stations.
-FEWEST = 30
-#: Circumradius, in those of typical triangles nearby, from which on a triangle spans a gap: times
-#: the ninth decile of all, as random points are less even than those of a grid.
-GAP = 2.4
-#: Circumradius from which on any triangle spans a gap.
-WIDEST_GAP = 4.0
-#: Shortest edge of a typical triangle in its circumradius, below which points lie along a line.
-THIN = 0.08
-#: Cosine of the angle around their middle within which points on the sphere fit into a plane.
-WITHIN = 0.2
-
-
-def join_points(positions: Floats, *, on_sphere: bool) -> Indices:
-    """Return triangles between neighbours, (M, 3), of points (N, 3) on a sphere or in a plane."""
-    return _joined(np.ascontiguousarray(positions, dtype=float).tobytes(), on_sphere)
-
-
-@lru_cache(maxsize=4)
-def _joined(data: bytes, on_sphere: bool) -> Indices:  # noqa: FBT001
-    p = np.frombuffer(data).reshape(-1, 3)
-    used = np.flatnonzero(np.isfinite(p).all(axis=1))
-    p = p[used]
-    if len(p) < FEWEST:
-        raise FieldError(
-            f"there are {len(p)} points with a position; expected at least {FEWEST} points, "
-            "between which triangles make a surface. Interpolate the values of stations to a grid"
-        )
-    if on_sphere:
-        p = p / np.linalg.norm(p, axis=1, keepdims=True)
-        triangles = _on_sphere(p)
-    else:
-        triangles = _in_plane(p[:, :2])
-    if len(triangles):
-        edges = np.linalg.norm(p[triangles] - p[np.roll(triangles, 1, axis=1)], axis=-1)
-        doubled = np.linalg.norm(triangle_normals(p, triangles), axis=1)
-        tiny = np.finfo(float).tiny
-        radii = np.maximum(edges.prod(axis=1) / np.maximum(2 * doubled, tiny), tiny)
-        if np.median(edges.min(axis=1) / radii) >= THIN:
-            triangles = triangles[~_across_gaps(triangles, radii, len(p))]
-            if 2 * len(np.unique(triangles)) > len(p):
-                return used[triangles]
-    raise FieldError(
-        f"the {len(p):,} points lie along lines, or in groups far from each other, so no triangles "
-        "between neighbours make a surface; interpolate the values to a grid"
-    )
-
-
-def _on_sphere(p: Floats) -> Indices:
-    """Join unit vectors (N, 3), as Delaunay triangles of the sphere, with outward normals."""
-    from scipy.spatial import ConvexHull, QhullError
-
-    middle = p.mean(axis=0)
-    middle /= max(float(np.linalg.norm(middle)), np.finfo(float).tiny)
-    if (p @ middle).min() > WITHIN:
-        # Stereographic maps keep circles, so these are the triangles of the sphere.
-        axes = np.linalg.svd(middle[None])[2]
-        axes[2] *= np.sign(np.linalg.det(axes) * (axes[0] @ middle))
-        return _in_plane((p - middle) @ axes[1:].T / (1 + p @ middle)[:, None])
-    try:
-        triangles = ConvexHull(p).simplices.astype(np.int64)
-    except QhullError:  # on one circle
-        return np.zeros((0, 3), dtype=np.intp)
-    inward = (triangle_normals(p, triangles) * p[triangles[:, 0]]).sum(axis=1) < 0
-    triangles[inward] = triangles[inward, ::-1]
-    return triangles
-
-
-def _in_plane(p: Floats) -> Indices:
-    """Join points (N, 2) by Delaunay triangles, counterclockwise."""
-    from scipy.spatial import Delaunay, QhullError
-
-    # Without units, as lengths along both axes may be of any size.
-    p = (p - p.mean(axis=0)) / max(float(np.abs(np.ptp(p, axis=0)).max()), np.finfo(float).tiny)
-    try:
-        return np.asarray(Delaunay(p).simplices.astype(np.int64))
-    except QhullError:  # on one line
-        return np.zeros((0, 3), dtype=np.intp)
-
-
-def _across_gaps(triangles: Indices, radii: Floats, count: int) -> Bools:
-    """Return which triangles are much larger than those around their nodes, (M,)."""
-    corners = triangles.ravel()
-    number = np.maximum(np.bincount(corners, minlength=count), 1)
-    share = 1 / radii
-    for _ in range(2):  # harmonic means, to which triangles across gaps add little
-        typical = np.bincount(corners, np.repeat(share, 3), count) / number
-        share = typical[triangles].mean(axis=1)
-    ratio = radii * share
-    limit = min(GAP * float(np.quantile(ratio, 0.9)), WIDEST_GAP)
-    return np.asarray(ratio > limit)

@@ -7,13 +7,14 @@ from pathlib import Path
 import direction_files
 import mesh_files
 import model_files
+import point_files
 import pytest
 import text_forms
 from known_flow import check
 from supported import ROWS, Supported, drawn
 
 pytest.importorskip("pyproj")
-MODULES = (direction_files, mesh_files, model_files, text_forms)
+MODULES = (direction_files, mesh_files, model_files, point_files, text_forms)
 
 
 @pytest.mark.parametrize("row", ROWS, ids=lambda row: row.make.__name__)

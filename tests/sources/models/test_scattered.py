@@ -5,16 +5,20 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+import pandas as pd
 import pytest
 import xarray as xr
 from earth_data import components, on_sphere
+from scipy.spatial import Delaunay
 
 from flowtex import FlowField
 from flowtex._util.array_types import Floats, Indices
 from flowtex.errors import FieldError
 from flowtex.field.earth import EARTH_RADIUS, GLOBE, Projection
+from flowtex.field.options import FieldOptions
 from flowtex.field.units import factor
-from flowtex.sources.models.model_mesh import join_points
+from flowtex.scene.fields import read_field
+from flowtex.sources.models.scattered import join_points
 
 pytestmark = pytest.mark.filterwarnings("ignore::flowtex.sources.notices.DatasetNotice")
 
@@ -236,3 +240,75 @@ def test_points_keep_the_unit_of_x(unit: str, metres: float) -> None:
     field = FlowField.from_xarray(ds)
     assert np.allclose(field.points[0, :, :2], np.stack([x, y], axis=-1))
     assert factor(field.length_unit, "m") == pytest.approx(metres)
+
+
+def longest_edges(field: FlowField) -> Floats:
+    """The longest edge of each triangle, along the Earth on it."""
+    p = field.points[0][field.triangles]
+    chords = np.linalg.norm(p - np.roll(p, 1, axis=1), axis=-1).max(axis=1)
+    if field.projection is None:
+        return np.asarray(chords)
+    return np.asarray(2 * EARTH_RADIUS * np.arcsin(chords / 2 / EARTH_RADIUS))
+
+
+def around_a_hole() -> tuple[Floats, Floats]:
+    x, y = RANDOM.uniform(0, 10, (2, 700))
+    outside = (x < 3) | (x > 7) | (y < 2) | (y > 8)
+    return x[outside], y[outside]
+
+
+@pytest.mark.parametrize("form", ["arrays", "table", "dictionary", "dataset"])
+def test_longest_edge_between_points_in_a_plane(form: str) -> None:
+    """All triangles of Delaunay with short edges are drawn, and no others."""
+    x, y = around_a_hole()
+    columns = {"x": x, "y": y, "u": 1 + 0 * x, "v": x}
+    data: Any = tuple(columns.values())
+    if form == "table":
+        data = pd.DataFrame(columns)
+    elif form == "dictionary":
+        data = columns
+    elif form == "dataset":
+        data = xr.Dataset({name: ("point", values) for name, values in columns.items()})
+        data = data.set_coords(["x", "y"])
+    field = read_field(data, FieldOptions(max_edge=0.9))
+    places = np.stack([x, y], axis=-1)
+    every = Delaunay(places).simplices
+    sides = np.linalg.norm(places[every] - places[np.roll(every, 1, axis=1)], axis=-1)
+    assert len(field.triangles) == (sides.max(axis=1) <= 0.9).sum()
+    assert longest_edges(field).max() <= 0.9
+    assert np.allclose(field.velocity[0][field.valid][:, 1], field.points[field.valid][:, 0])
+
+
+@pytest.mark.parametrize("length", [90, "90 km", "90000 m", "48.6 nautical_mile"])
+@pytest.mark.parametrize("globe", [True, False])
+def test_longest_edge_on_the_earth(length: Any, globe: bool) -> None:
+    lon, lat = RANDOM.uniform(0, 10, (2, 600))
+    data = along(lon, lat)
+    field = FlowField.from_xarray(data, max_edge=length, globe=True)
+    assert 85e3 < longest_edges(field).max() <= 90.1e3
+    assert "edges of up to" in field.reading.of("surface")[0]
+    assert faults(field) < 1e-6
+    if not globe:
+        flat_map = FlowField.from_xarray(data, max_edge=length)
+        assert len(flat_map.triangles) == len(field.triangles)
+
+
+@pytest.mark.parametrize("length", [0, -3, "x", "50 s", True, np.nan])
+def test_lengths_that_are_none(length: Any) -> None:
+    with pytest.raises(FieldError, match=r"max_edge is .*; expected the length .* in km, or with"):
+        FlowField.from_xarray(along(*RANDOM.uniform(0, 10, (2, 50))), max_edge=length)
+
+
+def test_longest_edge_that_leaves_nothing() -> None:
+    data = along(*RANDOM.uniform(0, 10, (2, 50)))
+    with pytest.raises(FieldError, match=r"max_edge is 1 m, and every .* it is up to .* m\. Incr"):
+        FlowField.from_xarray(data, max_edge="1 m")
+
+
+def test_longest_edge_of_a_grid() -> None:
+    x = np.arange(5.0)
+    u = np.ones((5, 5))
+    grid = xr.Dataset({"u": (("y", "x"), u), "v": (("y", "x"), u)}, {"x": x, "y": x})
+    for data in (grid, grid.to_dataframe().reset_index(), (x, x, u, u)):
+        with pytest.raises(FieldError, match=r"scattered points, but .* grid; omit it"):
+            read_field(data, FieldOptions(max_edge=2))
