@@ -176,6 +176,7 @@ def close_all(names: dict[str, Any]) -> None:
 # Pictures are smaller here than on the pages, and FTLE ends before the series.
 @pytest.mark.filterwarnings("ignore:FTLE is blank at")
 @pytest.mark.filterwarnings("ignore:a picture of .* has no room")
+@pytest.mark.filterwarnings("ignore:.* points joined by .* triangles")
 @pytest.mark.parametrize("page", [p for p in PAGES if blocks(p)], ids=lambda p: p.stem)
 def test_the_blocks_of_a_page_run(
     page: Path,
