@@ -47,6 +47,8 @@ SPHERE_DEGREES = 203.0
 LARGEST = 4.0
 #: Scale of a map along an edge between nodes, over its median, up to which it is not torn.
 PLAIN = 1.5
+#: Length on a map in metres below which an edge is a point, as along a pole, and has no scale.
+SHORTEST = 1.0
 #: Scale from which on a long edge is not drawn.
 WIDE = 4.0
 #: Length of an edge from which on it is long, as a share of the map.
@@ -55,6 +57,8 @@ FAR = 0.5
 INSIDE = 1e-9
 #: Share of a cell on both sides of a tear's end, between which nodes beside it lie.
 BESIDE = 0.02
+#: Least distance on the map between the sides of a tear, as a share of the edge that it tears.
+LEAST_OPENING = 0.02
 #: Up to how many nodes one of the blank lines between parts remains where a coarser view leaves
 #: lines out, if there is one.
 COARSE_NODES = 20_000
@@ -320,6 +324,10 @@ def _parts(
         row, column, sides = row[torn], column[torn], np.array(shares)
         parted |= wide
         parted[row, column] = True
+        ends = ends[0][torn], ends[1][torn]
+        length = np.linalg.norm(points[nodes[row, column]] - points[nodes[row, column + 1]], axis=1)
+        is_open = _opens(projection, ends, sides, LEAST_OPENING * length, straight=not is_line)
+        row, column, sides = row[is_open], column[is_open], sides[:, is_open]
     columns = np.flatnonzero(parted.any(axis=0))
     if not len(columns):
         return None
@@ -355,6 +363,26 @@ def _parts(
     return lon.T, lat.T, Chosen(chosen, slice(None), moved, share)
 
 
+def _opens(
+    projection: Projection,
+    ends: tuple[Floats, Floats],
+    sides: Floats,
+    least: Floats,
+    *,
+    straight: bool,
+) -> Bools:
+    """Return which torn edges, (T,), have a tear to whose sides their nodes can move.
+
+    ``sides`` are the shares of both sides, (2, T). An edge near the point of the Earth that an
+    azimuthal map opens into its outline is bent and may have both sides at one place, less than
+    ``least`` apart. At that point itself the map has no directions.
+    """
+    places = [between(*ends, side, straight=straight).T for side in sides]
+    here, there = (projection.positions(*place) for place in places)
+    is_wide = ~(np.linalg.norm(there - here, axis=1) <= least)
+    return is_wide & projection.has_directions(*places[0])
+
+
 def stretches(lon: Floats, lat: Floats, points: Floats, ends: Indices) -> tuple[Bools, Bools]:
     """Return which edges may be torn by a map, and which are too long there to be drawn.
 
@@ -364,7 +392,7 @@ def stretches(lon: Floats, lat: Floats, points: Floats, ends: Indices) -> tuple[
     places = points, Projection(GLOBE).positions(lon, lat)
     length, true = (np.linalg.norm(p[ends[..., 0]] - p[ends[..., 1]], axis=-1) for p in places)
     with np.errstate(invalid="ignore", divide="ignore"):
-        scale = length / true
+        scale = np.where(length < SHORTEST, np.nan, length / true)
         known = scale[np.isfinite(scale)]
         scale /= np.median(known) if known.size else 1.0
         is_long = length > FAR * np.nanmax(np.abs(points), initial=0.0)

@@ -13,6 +13,7 @@ from earth_data import DEGREES, components, on_sphere
 from flowtex import FlowField
 from flowtex._util.array_types import Bools, Floats
 from flowtex.field.grids.grid_surface import GridSurface
+from flowtex.sources.reproject import reprojected
 from flowtex.textures.geometry import NodeDisplacements
 
 #: Maps, as flowtex names them or as cartopy's axes have them; their middle, and the degrees from
@@ -195,3 +196,35 @@ def test_columns_beside_the_edge_of_a_map_are_those_of_the_data(
         found = field.at(place, 20.0)
         assert found is not None
         assert found.eastward == pytest.approx(float(data["u"][10, column]), abs=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("projection", "antipode"),
+    [
+        ("+proj=laea +lat_0=30 +lon_0=-60", (120, -30)),
+        ("+proj=aeqd +lat_0=50 +lon_0=20", (200, -50)),
+    ],
+)
+@pytest.mark.parametrize("west", [-180.0, -177.0])
+def test_cells_beside_the_antipode_have_the_values_of_the_data(
+    projection: str, antipode: tuple[float, float], west: float
+) -> None:
+    lon: Floats = np.asarray(west + 10.0 * np.arange(36), float)
+    lat = np.arange(-90.0, 91.0, 10.0)
+    data = winds(lon, lat)
+    rng = np.random.default_rng(3)
+    data["q"] = ("lat", "lon"), rng.uniform(0.0, 1.0, (len(lat), len(lon)))  # rough
+    around = xr.concat([data, data.isel(lon=0).assign_coords(lon=west + 360.0)], "lon")
+    on_map = FlowField.from_xarray(data, projection=projection)
+    fields = [on_map, reprojected(on_map, "platecarree")]
+    places = np.stack([rng.uniform(west, west + 360.0, 150), rng.uniform(-89.9, 30.0, 150)])
+    away = np.degrees(np.arccos(on_sphere(*places) @ on_sphere(*np.array(antipode, float))))
+    drawn = 0
+    for a, b in places[:, away < 45.0].T:
+        wanted = float(around["q"].interp(lon=a, lat=b))
+        for field in fields:
+            found = field.at(a, b)
+            if found is not None:
+                drawn += 1
+                assert found.scalars["q"] == pytest.approx(wanted, abs=2e-3)
+    assert drawn > (away < 45.0).sum()
