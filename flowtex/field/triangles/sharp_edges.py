@@ -13,11 +13,18 @@ import scipy
 
 from flowtex._util.array_types import Bools, Floats, Indices
 from flowtex._util.arrays import bounds, dot, norm
-from flowtex.field.triangles.triangle_nodes import triangle_normals
+from flowtex.field.triangles.triangle_nodes import (
+    neighbours,
+    nodal_sums,
+    triangle_normals,
+    uneven_nodes,
+)
 
 #: Cosine of the angle between two triangles from which on their edge is sharp; it is 1 in a plane.
 #: The sides of a prism of ten sides are faces, and those of a cylinder in twelve parts are not.
 SHARP_EDGE = 0.82
+#: Cosine of half that angle: triangles that differ less from their mean have no sharp edge.
+SHARP_HALF = np.sqrt((1 + SHARP_EDGE) / 2)
 #: Height of a triangle, as a share of the surface's extent, below which its normal is rounding.
 LEAST_HEIGHT = 1e-6
 
@@ -57,7 +64,7 @@ class _Edges(NamedTuple):
         return np.asarray(result)
 
 
-def split_nodes(points: Floats, triangles: Indices, beside: Indices) -> tuple[Indices, Indices]:
+def split_nodes(points: Floats, triangles: Indices) -> tuple[Indices, Indices]:
     """Give each face its own nodes at sharp edges.
 
     Parameters
@@ -66,8 +73,6 @@ def split_nodes(points: Floats, triangles: Indices, beside: Indices) -> tuple[In
         Positions of the nodes, (N, 3).
     triangles
         Nodes at the corners of triangles, (M, 3).
-    beside
-        The triangle across the edge opposite to each corner, (M, 3), or -1.
 
     Returns
     -------
@@ -77,26 +82,44 @@ def split_nodes(points: Floats, triangles: Indices, beside: Indices) -> tuple[In
         Which node each of them was, (n,); the first N keep their numbers.
     """
     count = len(points)
-    edges = _Edges.of(triangles, beside)
-    sharp = edges.sharp(points, triangles)
+    bent = _bent_nodes(points, triangles)
+    around = np.flatnonzero(bent[triangles].any(axis=1))
+    near = triangles[around]
+    edges = _Edges.of(near, neighbours(points, near))
+    sharp = edges.sharp(points, near)
     at_edge = np.zeros(count, dtype=bool)
     at_edge[edges.ends[:, sharp]] = True
-    loose = np.flatnonzero(at_edge[triangles])  # corners
+    loose = np.flatnonzero(at_edge[near])  # corners
     if not len(loose):
         return triangles, np.arange(count)
     joined = at_edge[edges.ends] & ~sharp
-    near = (3 * edges.near + edges.near_corners)[joined]
-    far = (3 * edges.far + edges.far_corners)[joined]
-    links = np.searchsorted(loose, near), np.searchsorted(loose, far)
+    corners = (3 * edges.near + edges.near_corners)[joined]
+    beyond = (3 * edges.far + edges.far_corners)[joined]
+    links = np.searchsorted(loose, corners), np.searchsorted(loose, beyond)
     graph = scipy.sparse.coo_array(
-        (np.ones(len(near), bool), links), shape=(len(loose), len(loose))
+        (np.ones(len(links[0]), bool), links), shape=(len(loose), len(loose))
     )
     face = scipy.sparse.csgraph.connected_components(graph, directed=False)[1]
     first = np.unique(face, return_index=True)[1]
-    nodes = triangles.ravel()[loose[first]]  # those of the faces
+    nodes = near.ravel()[loose[first]]  # those of the faces
     is_new = np.ones(len(nodes), dtype=bool)
     is_new[np.unique(nodes, return_index=True)[1]] = False
     number = np.where(is_new, count - 1 + np.cumsum(is_new), nodes)
+    near.ravel()[loose] = number[face]
     result = triangles.copy()
-    result.ravel()[loose] = number[face]
+    result[around] = near
     return result, np.concatenate([np.arange(count), nodes[is_new]])
+
+
+def _bent_nodes(points: Floats, triangles: Indices) -> Bools:
+    """Return the nodes (N,) at which an edge may be sharp."""
+    crosses = triangle_normals(points, triangles)
+    normals = nodal_sums(triangles, crosses, len(points))
+    size = norm(normals)
+    least = SHARP_HALF * norm(crosses)
+    bent = uneven_nodes(triangles, len(points))
+    for nodes in triangles.T:
+        # A triangle that is turned far from the mean at its corner.
+        turned = dot(crosses, normals[nodes]) <= least * size[nodes]
+        bent[nodes[turned]] = True
+    return bent

@@ -68,6 +68,14 @@ def sums_at(
     return np.stack([*columns], axis=-1)
 
 
+def nodal_sums(triangles: Indices, values: Floats, count: int) -> Floats:
+    """Return sums at the nodes, (count, C), of values at triangles, (M, C)."""
+    result = np.zeros((count, values.shape[1]))
+    for nodes in triangles.T:
+        result += sums_at(nodes, values, count)
+    return result
+
+
 def known_means(values: Floats, summed: Callable[[Floats], Floats]) -> Floats:
     """Return means (n, ...) of finite values (N, ...), which are summed; NaN without any."""
     flat = values.reshape(len(values), -1)
@@ -140,8 +148,23 @@ def once(corners: Indices) -> tuple[Indices, Indices]:
     return up[turns != 0], solid[order[begins]][turns != 0]
 
 
+def uneven_nodes(triangles: Indices, count: int) -> Bools:
+    """Return nodes (count,) on borders, or on edges that triangles pass in the same direction.
+
+    Around any other node, each neighbour follows in one triangle and precedes in another one.
+    """
+    random = np.random.default_rng(0).integers(0, MOST_RANDOM, count)
+    total = np.zeros(count, dtype=np.int64)
+    ahead = [random[nodes] for nodes in triangles.T]
+    for corner, nodes in enumerate(triangles.T):
+        np.add.at(total, nodes, ahead[corner - 2] - ahead[corner - 1])
+    return np.asarray(total != 0)
+
+
 def _border_nodes(triangles: Indices) -> Indices:
     """Return the nodes at sides that belong to one triangle."""
+    uneven = uneven_nodes(triangles, int(triangles.max(initial=0)) + 1)
+    triangles = triangles[np.count_nonzero(uneven[triangles], axis=1) > 1]
     keys = np.sort(_edge_keys(triangles))
     differs = np.diff(keys, prepend=-1, append=-1) != 0
     lone = keys[differs[1:] & differs[:-1]]
@@ -263,13 +286,20 @@ def _straightest(
         result[sides] = np.take_along_axis(sides, np.argmin(straight, axis=2), axis=1) // 3
 
 
+def face_alike(triangles: Indices) -> bool:
+    """Return whether all triangles face as their neighbours do."""
+    count = int(triangles.max(initial=0)) + 1
+    uneven = uneven_nodes(triangles, count)
+    near = triangles[np.count_nonzero(uneven[triangles], axis=1) > 1]
+    # Neighbours that face alike pass their common edge in opposite directions.
+    ahead = np.roll(near, -1, axis=1)
+    return not _has_equal((ahead * np.int64(count) + near).ravel())
+
+
 def flipped(triangles: Indices, beside: Indices) -> Bools:
     """Return which triangles (M,) face the other way than the first one of their part."""
     result = np.zeros(len(triangles), dtype=bool)
     ahead = np.roll(triangles, -1, axis=1)  # of the edge opposite to a corner
-    # Neighbours that face alike pass their common edge in opposite directions.
-    if not _has_equal((ahead * (np.int64(triangles.max(initial=0)) + 1) + triangles).ravel()):
-        return result
     rows, corners = np.nonzero(beside >= 0)
     other = beside[rows, corners]
     begins = ahead[rows, corners]

@@ -21,6 +21,7 @@ from flowtex.field.node_surface import IndexVelocity, NodeSurface, to_index_spac
 from flowtex.field.triangles.sharp_edges import split_nodes
 from flowtex.field.triangles.triangle_nodes import (
     SHARP,
+    face_alike,
     flipped,
     neighbours,
     same_places,
@@ -113,19 +114,22 @@ class TriangleSurface(NodeSurface):
     @cached_property
     def flipped(self) -> Bools:
         """Triangles that face the other way than the first one of their part, (M,)."""
-        return flipped(self.joined, self.neighbours)
+        joined = self.joined
+        if face_alike(joined):
+            return np.zeros(len(joined), dtype=bool)
+        return flipped(joined, self.neighbours)
 
     def with_faces(self) -> tuple[TriangleSurface, Indices]:
         """Return the surface with nodes for each face at sharp edges, and which each was, (n,)."""
         if self.frame is not None:
             return self, np.arange(self.shape[1])
         points = self.points[0]
-        triangles, origin = split_nodes(points, self.triangles, self.neighbours)
+        triangles, origin = split_nodes(points, self.triangles)
         if len(origin) == len(points):
             return self, origin
         valid = self.valid[:, origin]
         surface = TriangleSurface(self.points[:, origin], triangles, valid, on_globe=self.on_globe)
-        surface.__dict__.update(places=origin, neighbours=self.neighbours)
+        surface.__dict__["places"] = origin
         return surface, origin
 
     @cached_property

@@ -19,7 +19,6 @@ from flowtex.errors import FieldError
 from flowtex.field.triangles.sharp_edges import split_nodes
 from flowtex.field.triangles.triangle_nodes import (
     needle_edges,
-    neighbours,
     nodal_means,
     solid_triangles,
     triangle_normals,
@@ -156,8 +155,7 @@ def surface_sheet(mesh: Any, cut: Cut | None, velocity: MeshArray, record: Recor
     origin: Indices | slice = slice(None)
     if velocity.where == "cells" and cut is None:
         # Means of cells are those of one face.
-        beside = neighbours(points, triangles)
-        triangles, origin = split_nodes(points, triangles, beside)
+        triangles, origin = split_nodes(points, triangles)
         points = points[origin]
 
     def nodes(array: MeshArray) -> Floats:

@@ -13,6 +13,7 @@ from triangle_meshes import cube, soup, sphere, surface_of
 from flowtex import FlowField
 from flowtex._util.array_types import Floats, Indices
 from flowtex.field.quantities import PointValues
+from flowtex.field.triangles.sharp_edges import split_nodes
 from flowtex.field.triangles.triangle_nodes import triangle_normals
 from flowtex.textures.tiles.clusters import levels_of
 from flowtex.trace.trace import paths
@@ -70,6 +71,31 @@ def test_surface_without_sharp_edges_keeps_its_nodes() -> None:
         field = FlowField.from_triangles(points, triangles, np.tile(WIND, (len(points), 1)))
         np.testing.assert_array_equal(field.points[0], points)
         np.testing.assert_array_equal(field.triangles, triangles)
+
+
+def test_smooth_surface_is_read_without_neighbours_of_triangles() -> None:
+    points, triangles = sphere(3)
+    field = FlowField.from_triangles(points, triangles, np.tile(WIND, (len(points), 1)))
+    surface = field.surface
+    assert not surface.flipped.any()
+    assert "neighbours" not in surface.__dict__
+
+
+@pytest.mark.parametrize("name", BODIES)
+def test_faces_do_not_depend_on_the_order_of_corners(name: str, rng: np.random.Generator) -> None:
+    points, triangles = triangles_of(BODIES[name]())
+    smooth_points, smooth = sphere(2)
+    points = np.concatenate([points, smooth_points + 5])
+    triangles = np.concatenate([triangles, smooth + len(points) - len(smooth_points)])
+    split, origin = split_nodes(points, triangles)
+    turned = rng.random(len(triangles)) < 0.4
+    mixed, mixed_origin = split_nodes(
+        points, np.where(turned[:, None], triangles[:, ::-1], triangles)
+    )
+    same = np.where(turned[:, None], mixed[:, ::-1], mixed)
+    pairs = np.unique(np.stack([split.ravel(), same.ravel()]), axis=1)
+    assert len(origin) == len(mixed_origin) == pairs.shape[1] > len(points)
+    np.testing.assert_array_equal(split[-len(smooth) :], triangles[-len(smooth) :])
 
 
 def test_face_keeps_its_own_values() -> None:
