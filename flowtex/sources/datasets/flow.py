@@ -316,7 +316,8 @@ class Flow:
 def read_flow(data: Any, options: FieldOptions, record: Record) -> Flow:
     """Find the velocity of a dataset, its grid and its places; a FieldError has the remedy."""
     choice = Choice.of(options)
-    datasets = as_datasets(data, record, {*choice.sel, *choice.isel})
+    datasets = as_datasets(data, record, choice)
+    choice.used |= datasets.used
     datasets, pair = _chosen(datasets, choice, options)
     record("select", f"velocity: {pair}", notable=pair.guessed)
     unit, factors = component_units(pair, record)

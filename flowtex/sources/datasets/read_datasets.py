@@ -75,7 +75,7 @@ def read_datasets(
         raise FieldError(f"globe=True and projection={projection!r} are given; omit one of them")
     projection = GLOBE if options.globe else projection
     u, v = select.two_names(options.vectors)
-    datasets = as_datasets(data, record, {*(options.sel or {}), *(options.isel or {})})
+    datasets = as_datasets(data, record, Choice.of(options))
     with record.explain():
         if u is not None and v is not None and is_section(datasets, u, v):
             section = read_section(datasets, options, record, datasets.close, name=name)

@@ -40,7 +40,10 @@ class MeshVelocity:
 
     @classmethod
     def of(cls, stored: MeshArray, components: str | None, record: Record) -> MeshVelocity:
-        """Return the velocity for the directions that the user names."""
+        """Return the velocity for the directions that the user names.
+
+        Raises a FieldError for directions that a mesh does not have.
+        """
         if components is None:
             return cls(stored, stored)
         if components not in DIRECTIONS:

@@ -198,7 +198,7 @@ def _levels(ds: xr.Dataset, mesh: Mesh) -> xr.Dataset:
 def with_points(datasets: Sequence[xr.Dataset]) -> list[xr.Dataset]:
     """Return datasets in which the dimension of scattered points is called ``NODES``."""
     pairs = [pair for pair in find_pairs(datasets) if pair.rank <= NAMED]
-    for x, y in _pairs([ds[name] for ds in datasets for name in ds.variables]):
+    for x, y in position_pairs([ds[name] for ds in datasets for name in ds.variables]):
         times = [d for d in map(str, x.dims) if axis_kind(x, d) == TIME]
         if x.ndim != 1 and (x.ndim, len(times)) != (2, 1):
             continue
@@ -228,12 +228,12 @@ def with_points(datasets: Sequence[xr.Dataset]) -> list[xr.Dataset]:
 
 def points_in(variables: dict[str, xr.DataArray]) -> Iterator[Mesh]:
     """Yield the mesh of points along ``NODES``."""
-    for x, y in _pairs(list(variables.values())):
+    for x, y in position_pairs(list(variables.values())):
         if x.dims == (NODES,):
             yield Mesh(POINTS, x, y)
 
 
-def _pairs(arrays: list[xr.DataArray]) -> Iterator[tuple[xr.DataArray, xr.DataArray]]:
+def position_pairs(arrays: list[xr.DataArray]) -> Iterator[tuple[xr.DataArray, xr.DataArray]]:
     """Yield longitudes and latitudes, then x and y, along the same dimensions."""
     numbers = [a for a in arrays if a.ndim and a.dtype.kind in "fiu"]
     for pattern, word in ((LONGITUDE, "longitude"), (ACROSS, "projection_x_coordinate")):
@@ -273,7 +273,7 @@ def join_faces(
             f"faces ({face}), as no standard name says eastward and northward; compute these "
             f"components, or select one face, as in isel={{{face!r}: 0}}"
         )
-    for lon, _ in _pairs([ds[name] for ds in datasets for name in ds.variables]):
+    for lon, _ in position_pairs([ds[name] for ds in datasets for name in ds.variables]):
         dims = {str(d) for d in lon.dims}
         if lon.ndim == 3 and face in dims:
             return [_one_dimension(ds, dims) if dims <= set(ds.dims) else ds for ds in datasets]

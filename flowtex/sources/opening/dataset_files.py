@@ -18,10 +18,11 @@ from flowtex._util.array_types import AnyArray
 from flowtex.errors import FieldError, import_extra, import_package
 from flowtex.field import units
 from flowtex.sources.datasets import labels
-from flowtex.sources.datasets.axes import TIMES, as_slice, is_dates
+from flowtex.sources.datasets.axes import TIMES, Choice, as_slice, is_dates
 from flowtex.sources.datasets.select import find_pairs
 from flowtex.sources.inspection.inspect_file import NETCDF, inspect_file
 from flowtex.sources.models.conventions import with_mesh_axes
+from flowtex.sources.models.drifters import as_points
 from flowtex.sources.notices import NOTE, Record
 from flowtex.sources.opening import component_axes, flow_text, tables
 from flowtex.sources.opening.column_values import plain_values
@@ -69,6 +70,8 @@ class Datasets(list["xr.Dataset"]):
     ) -> None:
         super().__init__(items)
         self.closers, self.recognised = tuple(closers), recognised
+        #: Names of axes of which a choice was used when the datasets were opened.
+        self.used: set[str] = set()
 
     def close(self) -> None:
         """Close the files; a later read opens them again."""
@@ -76,11 +79,13 @@ class Datasets(list["xr.Dataset"]):
             close()
 
 
-def as_datasets(data: Any, record: Record | None = None, chosen: Container[str] = ()) -> Datasets:
+def as_datasets(data: Any, record: Record | None = None, choice: Choice | None = None) -> Datasets:
     """Return datasets with recognised axes: series and regions joined, and of a tree one group.
 
-    Versions are joined as well, unless one of them is among the ``chosen`` axes.
+    Versions are joined as well, unless one of them is chosen. Trajectories become points at the
+    chosen time.
     """
+    choice = choice or Choice()
     if isinstance(data, Datasets) and data.recognised:
         return data
     xarray, record = import_extra("xarray", "xarray"), record or Record()
@@ -95,14 +100,17 @@ def as_datasets(data: Any, record: Record | None = None, chosen: Container[str] 
             note = part.encoding.get(NOTE)
             if note:
                 record("select", note, notable=True)
-            whole = _one_version(_decoded(part), chosen, record)
+            whole = _one_version(_decoded(part), {*choice.sel, *choice.isel}, record)
             result.append(component_axes.split_components(whole))
     groups: dict[frozenset[Any], list[xr.Dataset]] = {}
     for ds in result:
         groups.setdefault(frozenset(ds.data_vars), []).append(ds)
     result = [ds for group in groups.values() for ds in _together(group, record)]
     closers = data.closers if isinstance(data, Datasets) else ()
-    return Datasets(with_mesh_axes([_with_axes(ds) for ds in result]), closers, recognised=True)
+    result = [as_points(ds, choice, record) for ds in result]
+    known = Datasets(with_mesh_axes([_with_axes(ds) for ds in result]), closers, recognised=True)
+    known.used = choice.used
+    return known
 
 
 def _one_version(ds: xr.Dataset, chosen: Container[str], record: Record) -> xr.Dataset:

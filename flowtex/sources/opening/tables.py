@@ -27,6 +27,7 @@ from flowtex._util.whole_file import TemporaryFolder
 from flowtex.errors import FieldError, import_extra
 from flowtex.sources.datasets import is_dataset
 from flowtex.sources.datasets.coordinates import LATITUDE, LONGITUDE
+from flowtex.sources.models.trajectories import IDENTITIES, TRAJECTORY
 from flowtex.sources.opening import component_axes
 from flowtex.sources.opening.column_names import component_names, split_unit
 from flowtex.sources.opening.column_values import column_numbers, without_units
@@ -49,6 +50,8 @@ MOST_PLACES = 4
 FEWEST_CELLS = 0.4
 #: Share of the points that must have values, over all times.
 FEWEST_ROWS = 0.5
+#: Share of identities whose positions move, below which they are those of stations.
+FEWEST_MOVING = 0.5
 #: Most bytes in memory for one byte of text: in JSON each "[]," is a list.
 TEXT_GROWTH = 24
 #: Most letters of a row that a message repeats.
@@ -97,6 +100,9 @@ def of_table(table: Any) -> xr.Dataset:
     frame = frame.dropna(subset=[x, y])
     planar = [c for c in columns if (ACROSS.match(c) or UPWARD.match(c)) and c not in pair]
     frame = frame.drop(columns=planar)  # the same positions on a map
+    moving = _trajectories(frame, x, y)
+    if moving is not None:
+        return _with_attributes(moving, attributes, x, y)
     frame, axes = _axes(frame, x, y)
     data = frame.select_dtypes(["number", "bool"]).columns
     frame = frame[list(dict.fromkeys([*axes, y, x, *data]))]
@@ -105,14 +111,40 @@ def of_table(table: Any) -> xr.Dataset:
         ds = frame.set_index([*axes, y, x]).to_xarray()
     else:
         ds = _points(frame, points, axes, x, y)
+    ds = _with_attributes(ds, attributes, x, y)
+    for name in axes:
+        ds[name].attrs["axis"] = "T" if TIMES.match(name) else "Z"
+    return ds
+
+
+def _with_attributes(
+    ds: xr.Dataset, attributes: dict[str, dict[str, str]], x: str, y: str
+) -> xr.Dataset:
+    """Return a dataset with the attributes of its columns."""
     for name, attrs in attributes.items():
         if name in ds.variables:
             ds[name].attrs.update(attrs)
     if LONGITUDE.match(x):
-        ds[x].attrs["units"], ds[y].attrs["units"] = "degrees_east", "degrees_north"
-    for name in axes:
-        ds[name].attrs["axis"] = "T" if TIMES.match(name) else "Z"
+        ds[x].attrs["units"] = "degrees_east"
+        ds[y].attrs["units"] = "degrees_north"
     return ds
+
+
+def _trajectories(frame: Any, x: str, y: str) -> xr.Dataset | None:
+    """Return rows with an identity, a time and a position that moves; ``None`` for others."""
+    columns = [str(name) for name in frame.columns if name not in (x, y)]
+    identity = next(filter(IDENTITIES.match, columns), None)
+    time = next(filter(TIMES.match, columns), None)
+    if identity is None or time is None or frame[identity].is_unique:
+        return None
+    places = frame.groupby(identity)[[x, y]].nunique().max(axis=1)
+    if (places > 1).mean() < FEWEST_MOVING:
+        return None
+    frame = frame.assign(**{time: _times_in(frame, time)})
+    data = frame.select_dtypes(["number", "bool"]).columns
+    kept = list(dict.fromkeys([identity, time, x, y, *data]))
+    ds: xr.Dataset = frame[kept].reset_index(drop=True).to_xarray().drop_vars("index")
+    return ds.set_coords([x, y]).assign_attrs(featureType=TRAJECTORY)
 
 
 def _plain(table: Any) -> tuple[Any, dict[str, dict[str, str]]]:
@@ -157,17 +189,10 @@ def _pair(
 
 def _axes(frame: Any, x: str, y: str) -> tuple[Any, list[str]]:
     """Return the columns of time and level for which the same positions repeat."""
-    pandas = import_extra("pandas", "xarray")
     named = [next(filter(p.match, map(str, frame.columns)), None) for p in (TIMES, LEVELS)]
     time, level = (None if name in (x, y) else name for name in named)
-    if time is not None and frame[time].dtype.kind not in "fiu":
-        try:
-            dates = pandas.to_datetime(frame[time], utc=True).dt.tz_convert(None)
-        except (ValueError, TypeError) as error:
-            raise FieldError(
-                f"the column {time!r} has {frame[time].iloc[0]!r}; expected dates or numbers"
-            ) from error
-        frame = frame.assign(**{time: dates})
+    if time is not None:
+        frame = frame.assign(**{time: _times_in(frame, time)})
     for axes in ([], [time], [level], [time, level]):
         if None not in axes and not frame.duplicated([*axes, y, x]).any():
             break
@@ -181,9 +206,23 @@ def _axes(frame: Any, x: str, y: str) -> tuple[Any, list[str]]:
     if not axes and time is not None and frame[time].nunique() > max(len(frame) / 2, 1):
         raise FieldError(
             f"nearly each of {len(frame):,} rows has its own {time} and position: a trajectory, or "
-            "points that move; interpolate the values to a grid, or drop the column"
+            "points that move. To draw many of them at one time, name the column that tells them "
+            "apart id; otherwise interpolate the values to a grid, or drop the column"
         )
     return frame, [str(axis) for axis in axes]
+
+
+def _times_in(frame: Any, time: str) -> Any:
+    """Return a column of times as numbers or dates; raises a FieldError for others."""
+    column = frame[time]
+    if column.dtype.kind in "fiu":
+        return column
+    try:
+        return import_extra("pandas", "xarray").to_datetime(column, utc=True).dt.tz_convert(None)
+    except (ValueError, TypeError) as error:
+        raise FieldError(
+            f"the column {time!r} has {column.iloc[0]!r}; expected dates or numbers"
+        ) from error
 
 
 def _is_grid(a: AnyArray, b: AnyArray) -> bool:
