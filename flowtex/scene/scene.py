@@ -628,6 +628,8 @@ def follow(
         if affects != "appearance":
             return
         scene = second()
+        if not first()._kept:  # the colours of both fit the present data
+            scene._kept = {}
         names = [*own, "image", *(["clim"] if "scalars" in own else [])]
         kept = {}
         for n, v in vars(scene.appearance).items():

@@ -144,7 +144,7 @@ class FlowArea(AppearanceAttributes):
             reading = FieldOptions()
         else:
             reading = self._reading
-        self.show(read_field(mesh, reading), keep_view=True, keep_range=True, keep_time=True)
+        self.show(read_field(mesh, reading), keep_view=True, keep_clim=True, keep_time=True)
 
     def ui(self, **attributes: Any) -> Any:
         """Add the view to the open layout; ``attributes`` are those of the element."""
@@ -177,6 +177,7 @@ class FlowArea(AppearanceAttributes):
         *,
         keep_view: bool = False,
         keep_range: bool = False,
+        keep_clim: bool = False,
         keep_time: bool = False,
     ) -> None:
         """Show another flow with the same settings.
@@ -189,11 +190,19 @@ class FlowArea(AppearanceAttributes):
             Whether the camera stays where it is.
         keep_range
             Whether the colour range stays, as for another part of the same data.
+        keep_clim
+            Whether a chosen colour range stays, while an automatic one is that of the flow.
         keep_time
             Whether the time stays, as far as the flow has it.
         """
         before = self.viewport.camera
-        self.viewport.show(field, keep_view=keep_view, keep_range=keep_range, keep_time=keep_time)
+        self.viewport.show(
+            field,
+            keep_view=keep_view,
+            keep_range=keep_range,
+            keep_clim=keep_clim,
+            keep_time=keep_time,
+        )
         if self.viewport.camera != before:
             self._place += 1
         self.changed()

@@ -160,18 +160,20 @@ class Viewport:
         *,
         keep_view: bool = False,
         keep_range: bool = False,
+        keep_clim: bool = False,
         keep_time: bool = False,
     ) -> None:
         """Show another flow with the same settings, and with the same camera for ``keep_view``.
 
         With ``keep_range``, for another part of the same data, the range of colours stays. One that
         was not chosen is that of the volume where the flow knows it, or else the present one. With
-        ``keep_time`` the time stays as far as the flow has it.
+        ``keep_clim`` only a chosen range stays. With ``keep_time`` the time stays as far as the
+        flow has it.
         """
         camera = self.camera
         surface = self.scene.whole.surface
         time = first_time(self.scene, field, keep=keep_time)
-        if keep_range:
+        if keep_range or keep_clim:
             changes: dict[str, Any] = {}
         else:
             changes = {"clim": None}

@@ -119,6 +119,37 @@ def test_another_mesh_is_read_as_the_first_one_and_the_view_stays() -> None:
     area.close()
 
 
+def whirl(speed: float) -> flowtex.FlowField:
+    """A rotation whose greatest speed on a square is given."""
+    y, x = np.mgrid[-1:1:9j, -1:1:9j]
+    velocity = speed / np.sqrt(2) * np.stack([-y, x], axis=-1)
+    return flowtex.FlowField.from_arrays(np.stack([x, y], axis=-1), velocity)
+
+
+def test_colours_follow_an_assigned_flow_unless_their_range_is_chosen() -> None:
+    app = small_page(whirl(1.0), 3, 96, 64)
+    app.area.field = whirl(3.0)
+    assert app.area.scene.scalar_limits == pytest.approx((0.0, 3.0))
+    app.area.compare({"contrast": 0.0})
+    app.area.field = whirl(2.0)
+    for pane in app.viewport.panes:
+        assert pane.scene.scalar_limits == pytest.approx((0.0, 2.0))
+    app.area.clim = (0.0, 5.0)
+    app.area.field = whirl(4.0)
+    for pane in app.viewport.panes:
+        assert pane.scene.scalar_limits == (0.0, 5.0)
+
+
+def test_colours_of_both_panes_can_fit_the_present_data() -> None:
+    app = small_page(whirl(1.0), 3, 96, 64)
+    app.area.compare({"contrast": 0.0})
+    app.area.show(whirl(3.0), keep_range=True)
+    for limits in ((0.0, 1.0), (0.0, 3.0)):
+        for pane in app.viewport.panes:
+            assert pane.scene.scalar_limits == pytest.approx(limits)
+        app.area.take_colours({"clim": None})
+
+
 def test_a_page_is_told_what_changes_here_and_what_others_say(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
