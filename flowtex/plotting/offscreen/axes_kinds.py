@@ -102,12 +102,15 @@ def same_map(field: FlowField, projection: Projection, *, stretched: bool) -> Sa
     if same is not None:
         return SameMap(same, 0.0)
     turn = _turn_of(projection)
-    if not (stretched and np.isfinite(ours).all() and math.isfinite(turn) and turn > 0):
+    own_turn = _turn_of(own)
+    if not (stretched and np.isfinite(ours).all() and turn > 0 and own_turn > 0):
         return None
-    order = np.argsort(theirs[:, 0], kind="stable")
-    onward = ours[order]
-    onward[:, 0] = np.unwrap(onward[:, 0], period=turn)
-    same = _even_transform(theirs[order], onward, stretched=True)
+    # Either map may end between the nodes, where the other one goes on.
+    wanted = theirs[:, 0] * turn / own_turn
+    behind = wanted - ours[:, 0]
+    onward = ours.copy()
+    onward[:, 0] += turn * np.round((behind - behind[0]) / turn)
+    same = _even_transform(theirs, onward, stretched=True)
     if same is None:
         return None
     return SameMap(same, turn * float(same.get_matrix()[0, 0]))

@@ -197,6 +197,11 @@ TURNED: dict[str, tuple[Floats, str, Any]] = {
     "around": (np.arange(0.0, 360.0, 5.0), "platecarree", ccrs.PlateCarree(180)),
     "region": (np.arange(140.0, 240.0, 4.0), "platecarree", ccrs.PlateCarree()),
     "Mercator": (np.arange(0.0, 360.0, 5.0), "+proj=merc +lon_0=180", ccrs.Mercator()),
+    "region in two parts": (
+        np.arange(-60.0, 61.0, 4.0),
+        "+proj=eqc +lon_0=180",
+        ccrs.PlateCarree(),
+    ),
 }
 
 
@@ -207,6 +212,8 @@ def test_a_store_is_drawn_on_axes_that_end_at_another_meridian(
     pytest.importorskip("zarr")
     lon, projection, crs = TURNED[name]
     monkeypatch.setattr("flowtex.textures.tiles.pyramid.ROOT_NODES", 150)
+    # Blank lines remain in the coarsest level.
+    monkeypatch.setattr("flowtex.sources.maps.COARSE_NODES", 100)
     place = tmp_path / "turned.zarr"
     flow = FlowField.from_xarray(winds(lon, np.arange(-80.0, 81.0, 4.0)), projection=projection)
     flowtex.pyramid.build(flow, place, progress=False)
