@@ -126,10 +126,11 @@ class Setting:
     @property
     def condition(self) -> str:
         """Condition under which the setting has an effect, as a sentence; empty if always."""
-        needs = [
-            f"{TABLE[name].label} {'≠' if sign == '!=' else '='} {TABLE[name].format(value)}"
-            for name, sign, value in NEEDS.get(self.name, ())
-        ]
+        needs = []
+        for name, sign, value in NEEDS.get(self.name, ()):
+            needs.append(
+                f"{TABLE[name].label} {'≠' if sign == '!=' else '='} {TABLE[name].format(value)}"
+            )
         if needs:
             return f"Requires {' or '.join(needs)}."
         return ""

@@ -180,7 +180,10 @@ def serve_library(library: Library, page: ServeFlags | None, options: dict[str, 
     page = page or ServeFlags()
     with waiting(f"Reading {library.names[0]}"):
         field = library.field(*first_choice(library, options))
-    look = {name: options[name] for name in vars(Appearance()) if name in options}
+    look = {}
+    for name in vars(Appearance()):
+        if name in options:
+            look[name] = options[name]
     Scene.of(field, **look).close()  # raises errors before a page asks
     if (host := _host.get()) is not None:
         host(app_maker(library, None, options), describe(field))

@@ -117,7 +117,10 @@ def drawing(*groups: object) -> dict[str, Any]:
 def require_app() -> None:
     """Raise an error if a package that pages need is not installed."""
     packages = ("trame", "trame_vuetify", "trame_rca")
-    missing = [name for name in packages if importlib.util.find_spec(name) is None]
+    missing = []
+    for name in packages:
+        if importlib.util.find_spec(name) is None:
+            missing.append(name)
     if missing:
         raise UsageError(
             f"the page needs {', '.join(missing)}, which is not installed. To install it:\n  "

@@ -120,9 +120,9 @@ def _file_table(summary: FileSummary) -> Table:
         middle = sum(bounds[2]) / 2
     else:
         middle = 0.0
-    ends = [
-        f"{axis} {low:.4g} to {high:.4g}" for axis, (low, high) in zip("xyz", bounds, strict=False)
-    ]
+    ends = []
+    for axis, (low, high) in zip("xyz", bounds, strict=False):
+        ends.append(f"{axis} {low:.4g} to {high:.4g}")
     listed = ", ".join(f"{time:g}" for time in times)
     if len(times) > MOST_TIMES:
         span = f"{times[0]:g} to {times[-1]:g}"

@@ -34,10 +34,8 @@ GRAVITY = 9.81  #: Gravitational acceleration in m/s².
 def cylinder_arrays() -> tuple[Floats, Floats, Floats, Floats]:
     """Return points (65, 161, 2), velocity (31, 65, 161, 2), vorticity and times (31,)."""
     file = load(CYLINDER)
-    velocity, vorticity = (
-        unpack(file[name], float(file[step]), axis=(0, 1, 2))
-        for name, step in (("velocity", "step"), ("vorticity", "vorticity_step"))
-    )
+    velocity = unpack(file["velocity"], float(file["step"]), axis=(0, 1, 2))
+    vorticity = unpack(file["vorticity"], float(file["vorticity_step"]), axis=(0, 1, 2))
     columns = np.arange(velocity.shape[2] + 1) % velocity.shape[2]
     theta = 2.0 * np.pi * columns / velocity.shape[2]
     points = file["radii"][:, None, None] * np.stack([np.cos(theta), np.sin(theta)], axis=-1)
@@ -56,7 +54,8 @@ def vortex_arrays() -> tuple[Floats, Floats, Floats, Floats]:
     axis = np.linspace(0.0, 1.0, size + 1)
     points = np.stack(np.meshgrid(axis, axis), axis=-1)
     wrapped = np.arange(size + 1) % size
-    velocity, vorticity = (values[:, wrapped][:, :, wrapped] for values in (velocity, vorticity))
+    velocity = velocity[:, wrapped][:, :, wrapped]
+    vorticity = vorticity[:, wrapped][:, :, wrapped]
     return points, velocity, vorticity, file["times"]
 
 

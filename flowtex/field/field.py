@@ -529,10 +529,8 @@ class FlowField(FieldConstructors, FieldQuantities):
             index: Any = list(steps)
         else:
             index = slice(first, last)
-        data, parts = (
-            {k: s[index] if len(s) > 1 else s for k, s in arrays.items()}
-            for arrays in (self.scalars, self.parts)
-        )
+        data = {k: s[index] if len(s) > 1 else s for k, s in self.scalars.items()}
+        parts = {k: s[index] if len(s) > 1 else s for k, s in self.parts.items()}
         velocity = np.asarray(self.velocity[index])
         times = self.times[index]
         part = replace(self, velocity=velocity, times=times, scalars=data, parts=parts)

@@ -211,7 +211,10 @@ def closest(at: Floats, a: Floats, b: Floats, c: Floats) -> tuple[Floats, Floats
     u = b - a
     v = c - a
     w = at - a
-    uu, vv, uv, wu = (np.einsum("nc,nc->n", p, q) for p, q in ((u, u), (v, v), (u, v), (w, u)))
+    uu = np.einsum("nc,nc->n", u, u)
+    vv = np.einsum("nc,nc->n", v, v)
+    uv = np.einsum("nc,nc->n", u, v)
+    wu = np.einsum("nc,nc->n", w, u)
     # By the part of v across u long triangles lose no digits.
     lean = uv / np.where(uu > 0, uu, 1.0)
     across = v - lean[:, None] * u

@@ -180,13 +180,16 @@ def _project(
     along = u_i[..., None] * p_i + u_j[..., None] * p_j
     speed[:] = norm(along)
     np.subtract(velocity, along, out=along)
-    all_, normal = (float((dot(v, v) * (~flat & valid)).sum()) for v in (velocity, along))
+    all_ = float((dot(velocity, velocity) * (~flat & valid)).sum())
+    normal = float((dot(along, along) * (~flat & valid)).sum())
     return all_, normal
 
 
 def _at_pole(pole: Pole, velocity: Floats, u: Floats, speed: Floats) -> None:
     """Write the velocity of a pole to its nodes."""
-    v, u, speed = (pole.lines(a, 1) for a in (velocity, u, speed))
+    v = pole.lines(velocity, 1)
+    u = pole.lines(u, 1)
+    speed = pole.lines(speed, 1)
     mean = v[:, pole.line, :-1].mean(axis=1) @ pole.plane.T
     u[:, pole.line, :, 1 - pole.component] = 0.0
     u[:, pole.line, :, pole.component] = pole.along(mean @ pole.plane)

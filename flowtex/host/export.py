@@ -231,10 +231,8 @@ def _with_tiles(scene: ClientData) -> ClientData:
         return scene
     finest = pyramid.depth
     room = float(TILE_BYTES)
-    surface, step = (
-        sum(len(part_text(part)[1]) for part in parts.values())
-        for parts in (scene.surface(), scene.step(0))
-    )
+    surface = sum(len(part_text(part)[1]) for part in scene.surface().values())
+    step = sum(len(part_text(part)[1]) for part in scene.step(0).values())
     root = (surface + scene.steps * step) / math.prod(pyramid.shape(pyramid.depth))
     while finest and (room := room - root * math.prod(pyramid.shape(finest - 1))) >= 0:
         finest -= 1

@@ -331,7 +331,8 @@ def _colour(scene: ClientData, picture: Picture, steps: tuple[int, int], between
     colours = scene.colours
     if colours.values is None or not len(colours.scale.table):
         return np.asarray(colours.plain)
-    before, after = (colours.values[min(step, len(colours.values) - 1)] for step in steps)
+    before = colours.values[min(steps[0], len(colours.values) - 1)]
+    after = colours.values[min(steps[1], len(colours.values) - 1)]
     values = before * (1 - between) + after * between
     if colours.flat:
         nearest = picture.cell

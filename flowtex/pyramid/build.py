@@ -399,7 +399,8 @@ def _write_finest(run: _Run, source: NodeSource, workers: Threads) -> None:
     if run.about["axes"]:
         first = np.array([0])
         for level in range(run.about["depth"] + 1):
-            rows, columns = (level_lines(n, level) for n in source.shape)
+            rows = level_lines(source.shape[0], level)
+            columns = level_lines(source.shape[1], level)
             run.group[f"{level}/x"][:] = source.points(first, columns)[0, :, 0]
             run.group[f"{level}/y"][:] = source.points(rows, first)[:, 0, 1]
     digests = Levels(run.place).whole(f"0/{DIGESTS}")

@@ -194,7 +194,8 @@ def coarse_lines(field: FlowField) -> tuple[Floats, Floats]:
     if field.projection is None:
         return field.points[0, :, 0], field.points[:, 0, 1]
     lon, lat = field.projection.lonlat(field.points)
-    middle_row, middle_column = (n // 2 for n in field.shape)
+    middle_row = field.shape[0] // 2
+    middle_column = field.shape[1] // 2
     return lon[middle_row], lat[:, middle_column]
 
 

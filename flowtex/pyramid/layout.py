@@ -94,9 +94,13 @@ class Part(NamedTuple):
 
     def lines(self, shape: tuple[int, int]) -> tuple[slice, slice]:
         """Return the rows and columns of a level with this many nodes."""
-        first, second = (
-            slice(at * chunks * TILE_CELLS, min((at + 1) * chunks * TILE_CELLS, n))
-            for at, chunks, n in zip((self.row, self.column), SHARD_CHUNKS, shape, strict=True)
+        first = slice(
+            self.row * SHARD_CHUNKS[0] * TILE_CELLS,
+            min((self.row + 1) * SHARD_CHUNKS[0] * TILE_CELLS, shape[0]),
+        )
+        second = slice(
+            self.column * SHARD_CHUNKS[1] * TILE_CELLS,
+            min((self.column + 1) * SHARD_CHUNKS[1] * TILE_CELLS, shape[1]),
         )
         return first, second
 
@@ -114,9 +118,8 @@ def parts_of(level: int, shape: tuple[int, int], steps: int) -> list[Part]:
 
 def parts_along(shape: tuple[int, int]) -> tuple[int, int]:
     """Return how many parts a level with this many nodes (J, I) has along both axes."""
-    rows, columns = (
-        -(-n // (chunks * TILE_CELLS)) for n, chunks in zip(shape, SHARD_CHUNKS, strict=True)
-    )
+    rows = -(-shape[0] // (SHARD_CHUNKS[0] * TILE_CELLS))
+    columns = -(-shape[1] // (SHARD_CHUNKS[1] * TILE_CELLS))
     return rows, columns
 
 
@@ -124,7 +127,8 @@ def tiles_of(level: int, shape: tuple[int, int], about: About) -> tuple[int, int
     """Return how many tiles a level with this many nodes (J, I) has along both axes."""
     if level == about["depth"]:
         return 1, 1
-    rows, columns = (-(-(n - 1) // TILE_CELLS) for n in shape)
+    rows = -(-(shape[0] - 1) // TILE_CELLS)
+    columns = -(-(shape[1] - 1) // TILE_CELLS)
     return rows, columns
 
 

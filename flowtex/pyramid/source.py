@@ -189,7 +189,8 @@ class RegionSource:
     def ranges(self) -> dict[str, list[tuple[float, float] | None]]:
         """Return ends of a sample of scalars and of the speed, whole and robust."""
         every = math.ceil(math.sqrt(math.prod(self.shape) / MOST_SAMPLES))
-        rows, columns = (np.arange(0, n, every) for n in self.shape)
+        rows = np.arange(0, self.shape[0], every)
+        columns = np.arange(0, self.shape[1], every)
         found: dict[str, list[Floats]] = {}
         for step in typical_steps(len(self.field.times)):
             nodes = self.nodes(step, rows, columns)

@@ -172,7 +172,8 @@ class StoredPyramid(Pyramid):
         if not all(map(len, above)):
             return
         lines = [2 * line - a for line, a in zip(above, first, strict=True)]
-        rows, columns = (line + np.array([[-1], [0], [1]]) for line in lines)
+        rows = lines[0] + np.array([[-1], [0], [1]])
+        columns = lines[1] + np.array([[-1], [0], [1]])
         at = np.ix_(*lines)
         coarse = stored.nodes(key.level + 1, *above, velocities=False)
         pairs = [(field.points[drawn][at], coarse.points), (valid[at], coarse.valid)]

@@ -267,7 +267,10 @@ class Camera:
                 f"camera is {brief(values)}; expected a mapping with some of {', '.join(names)}"
             )
         attributes = {**({} if base is None else asdict(base)), **values}
-        missing = [name for name in ("position", "focal_point", "up") if name not in attributes]
+        missing = []
+        for name in ("position", "focal_point", "up"):
+            if name not in attributes:
+                missing.append(name)
         if missing:
             raise CameraError(f"camera is {brief(values)}; expected {', '.join(missing)} as well")
         return cls(**attributes)

@@ -51,7 +51,8 @@ class EvenBlocks:
         end = (right, high)
         if clip is not None:
             end = (min(right, clip[0]), min(high, clip[1]))
-        columns, rows = (-(-(end[n] - first[n]) // side) + 2 for n in range(2))
+        columns = -(-(end[0] - first[0]) // side) + 2
+        rows = -(-(end[1] - first[1]) // side) + 2
         reach = EVEN_RADII * np.sqrt(variance)
         return cls(side, first, end, (columns, rows), float(variance), float(reach))
 

@@ -45,8 +45,10 @@ class MeshLevels:
         height: float = 1.0,
     ) -> None:
         self._shape: tuple[int, int] = points.shape[0], points.shape[1]
-        self._cells, self._periodic = cells, periodic
-        self._slide, self._height = slide, height
+        self._cells = cells
+        self._periodic = periodic
+        self._slide = slide
+        self._height = height
         points = np.where(np.isfinite(points), points, 0.0)
         #: Greatest distance of a node from the triangles of each level, (L, rows, columns) of
         #: blocks; of its outline, and along the surface, shares of it.
@@ -71,7 +73,8 @@ class MeshLevels:
         the height of what is seen is a length then, and else for a distance of one. The picture is
         so many ``pixels`` high.
         """
-        radius, cell_size = self.blocks[..., 3], self.blocks[..., 4]
+        radius = self.blocks[..., 3]
+        cell_size = self.blocks[..., 4]
         distance = np.ones(radius.shape)
         if eye is not None:
             distance = np.linalg.norm(self.blocks[..., :3] - eye, axis=-1) - radius
@@ -99,10 +102,9 @@ class MeshLevels:
         if joins is None:
             whole = Region(0, 0, 0, levels)
             joins = join([whole], (levels.shape[0], levels.shape[1]), self._periodic)[0]
-        parts = [
-            self._triangles_of(np.nonzero(levels == level), int(level), joins)
-            for level in np.unique(levels[levels >= 0])
-        ]
+        parts = []
+        for level in np.unique(levels[levels >= 0]):
+            parts.append(self._triangles_of(np.nonzero(levels == level), int(level), joins))
         return np.concatenate(parts or [np.empty((0, 3), np.intp)])
 
     def _triangles_of(self, blocks: tuple[Indices, ...], level: int, border: Ints) -> Indices:
@@ -111,11 +113,12 @@ class MeshLevels:
         first_row, first_column = (BLOCK_CELLS * at for at in blocks)
         rows = np.minimum(places, (self._shape[0] - 1 - first_row)[:, None])
         columns = np.minimum(places, (self._shape[1] - 1 - first_column)[:, None])
-        row, column = (
-            np.broadcast_to(a, (len(rows), len(places), len(places))).copy()
-            for a in (rows[:, :, None], columns[:, None, :])
-        )
-        below, above, left, right = (border[side][blocks] for side in range(4))
+        row = np.broadcast_to(rows[:, :, None], (len(rows), len(places), len(places))).copy()
+        column = np.broadcast_to(columns[:, None, :], (len(rows), len(places), len(places))).copy()
+        below = border[0][blocks]
+        above = border[1][blocks]
+        left = border[2][blocks]
+        right = border[3][blocks]
         column[:, 0] = _snapped(columns, below)
         column[:, -1] = _snapped(columns, above)
         row[:, :, 0] = _snapped(rows, left)
@@ -140,7 +143,8 @@ class MeshLevels:
         A level leaves out every second line of the one before. Its error is at most that of the
         one before plus the deviation of the omitted lines from their neighbours.
         """
-        directions, per_block = _directions(values), [BLOCK_CELLS, BLOCK_CELLS]
+        directions = _directions(values)
+        per_block = [BLOCK_CELLS, BLOCK_CELLS]
         lines = [np.arange(n) for n in self._shape]
         errors = [np.zeros(_in_blocks(self._cells, per_block).shape)]
         while max(per_block) > 1:
@@ -149,7 +153,8 @@ class MeshLevels:
                 off = self._weighted(_deviation(values, lines[axis], axis), directions, 1 - axis)
                 error = error + _in_blocks(_at_cells(off), per_block)
                 kept = np.append(np.arange(0, len(lines[axis]) - 1, 2), len(lines[axis]) - 1)
-                values, lines[axis] = values.take(kept, axis), lines[axis][kept]
+                values = values.take(kept, axis)
+                lines[axis] = lines[axis][kept]
                 directions = directions.take(kept, axis + 1)
                 per_block[axis] //= 2
             twist = values[1:, 1:] + values[:-1, :-1] - values[1:, :-1] - values[:-1, 1:]
@@ -183,7 +188,8 @@ def _in_blocks(values: AnyArray, per_block: Sequence[int], most: np.ufunc = np.m
 
 def _beside_borders(shape: tuple[int, ...]) -> Bools:
     """Return which cells (J, I) lie along the borders of blocks."""
-    row, column = (np.arange(count) % BLOCK_CELLS for count in shape)
+    row = np.arange(shape[0]) % BLOCK_CELLS
+    column = np.arange(shape[1]) % BLOCK_CELLS
     ends = [0, BLOCK_CELLS - 1]
     return np.asarray(np.isin(row, ends)[:, None] | np.isin(column, ends))
 
@@ -192,7 +198,8 @@ def _directions(points: Floats) -> Floats:
     """Return normals and directions of lines at nodes, (3, J, I, 3), zero where missing."""
     # Only directions count, so no number is too large to be squared.
     points = points / max(float(np.abs(points).max()), np.finfo(float).tiny)
-    along_i, along_j = np.gradient(points, axis=1), np.gradient(points, axis=0)
+    along_i = np.gradient(points, axis=1)
+    along_j = np.gradient(points, axis=0)
     directions = np.stack([np.cross(along_i, along_j), along_i, along_j])
     length = norm(directions)[..., None]
     return np.asarray(directions / np.where(length > 0, length, 1.0))
@@ -200,8 +207,11 @@ def _directions(points: Floats) -> Floats:
 
 def _deviation(values: Floats, lines: Indices, axis: int) -> Floats:
     """Return how every second line of values, except the ends, differs from its neighbours."""
-    result, at = np.zeros_like(values), (slice(None),) * axis
-    low, left, high = (slice(n, len(lines) - 2 + n, 2) for n in range(3))
+    result = np.zeros_like(values)
+    at = (slice(None),) * axis
+    low = slice(0, len(lines) - 2, 2)
+    left = slice(1, len(lines) - 1, 2)
+    high = slice(2, len(lines), 2)
     share = (lines[left] - lines[low]) / (lines[high] - lines[low])
     across = values[(*at, high)] - values[(*at, low)]
     omitted = values[(*at, left)] - values[(*at, low)]
@@ -254,10 +264,14 @@ def join(
     lines = [np.maximum(*below), np.maximum(*left)]
     while True:
         for axis in (0, 1):
-            line = lines[axis] if axis == 0 else lines[axis].T
+            if axis == 0:
+                line = lines[axis]
+            else:
+                line = lines[axis].T
             if periodic[axis]:
                 line[0] = line[-1] = np.maximum(line[0], line[-1])
-        joins, before = [], [line.copy() for line in lines]
+        joins = []
+        before = [line.copy() for line in lines]
         for part in parts:
             joins.append(_joined(part, lines))
         if all(np.array_equal(*pair) for pair in zip(before, lines, strict=True)):
@@ -285,20 +299,27 @@ def _beside_holes(parts: Sequence[Region], blocks: tuple[int, int], edges: Any) 
 
 def _joined(part: Region, lines: list[Ints]) -> Ints:
     """Give each side of a part's blocks one level, the coarsest along it, and return them."""
-    size, (rows, columns) = 1 << part.step, part.levels.shape
+    size = 1 << part.step
+    rows, columns = part.levels.shape
     drawn = part.levels >= 0
     result = np.empty((4, rows, columns), dtype=np.int64)
     for side in range(4):
         axis, is_far = divmod(side, 2)
-        line = lines[axis] if axis == 0 else lines[axis].T
-        counts = (rows, columns) if axis == 0 else (columns, rows)
-        first = (part.row, part.column) if axis == 0 else (part.column, part.row)
+        if axis == 0:
+            line = lines[axis]
+            counts = (rows, columns)
+            first = (part.row, part.column)
+            shown = drawn
+        else:
+            line = lines[axis].T
+            counts = (columns, rows)
+            first = (part.column, part.row)
+            shown = drawn.T
         picks = np.minimum(first[0] + (np.arange(counts[0]) + is_far) * size, len(line) - 1)
         width = line.shape[1]
         along = first[1] + np.arange(counts[1] * size)
         values = line[np.ix_(picks, np.minimum(along, width - 1))]
         coarsest = values.reshape(counts[0], counts[1], size).max(axis=2)
-        shown = drawn if axis == 0 else drawn.T
         spread = np.where(np.repeat(shown, size, axis=1), np.repeat(coarsest, size, axis=1), values)
         inside = along < width
         line[np.ix_(picks, along[inside])] = spread[:, inside]
@@ -309,9 +330,8 @@ def _joined(part: Region, lines: list[Ints]) -> Ints:
 def _put(blocks: Ints, part: Region, values: Ints) -> None:
     """Write values of a part's blocks to the finest blocks below them, where they are drawn."""
     size = 1 << part.step
-    spread, drawn = (
-        np.repeat(np.repeat(a, size, axis=0), size, axis=1) for a in (values, part.levels >= 0)
-    )
+    spread = np.repeat(np.repeat(values, size, axis=0), size, axis=1)
+    drawn = np.repeat(np.repeat(part.levels >= 0, size, axis=0), size, axis=1)
     covered = _covered(blocks, part)
     rows, columns = covered.shape
     np.copyto(covered, spread[:rows, :columns], where=drawn[:rows, :columns])
@@ -319,7 +339,8 @@ def _put(blocks: Ints, part: Region, values: Ints) -> None:
 
 def _covered(blocks: Ints, part: Region) -> Ints:
     """Return the finest blocks below those of a part."""
-    rows, columns = (n << part.step for n in part.levels.shape)
+    rows = part.levels.shape[0] << part.step
+    columns = part.levels.shape[1] << part.step
     return blocks[part.row : part.row + rows, part.column : part.column + columns]
 
 
@@ -357,5 +378,8 @@ def mesh_levels_of(textures: TextureSet) -> MeshLevels | TriangleBlocks:
     if isinstance(geometry, TriangleGeometry):
         return TriangleBlocks(geometry)
     # An image lies on the nodes and moves with them; noise is looked up between them.
-    shares = (PLACED_SHARE, HEIGHT_SHARE) if textures.image is None else (1.0, 1.0)
+    if textures.image is None:
+        shares = (PLACED_SHARE, HEIGHT_SHARE)
+    else:
+        shares = (1.0, 1.0)
     return MeshLevels(geometry.points, geometry.cells, geometry.periodic, *shares)

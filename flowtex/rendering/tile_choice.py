@@ -104,7 +104,10 @@ def choose_tiles(pyramid: Pyramid, view: TileView) -> Choices:
             children = pyramid.children(key)
         else:
             children = []
-        finer = [child for child in children if coarse[finer_part(pyramid, child, key)].any()]
+        finer = []
+        for child in children:
+            if coarse[finer_part(pyramid, child, key)].any():
+                finer.append(child)
         chosen[key] = Choice(bool(shown.any()), float(pixels[shown].max(initial=0.0)), finer)
         waiting += finer
     return chosen

@@ -227,7 +227,8 @@ def _motion(textures: TextureSet, settings: Settings, view: ViewState) -> Values
     if store.steps > 1:
         # About the time in which the flow crosses the surface, a whole share of the series, so that
         # a periodic one has no seam.
-        first, last = (float(store.field.times[step]) for step in (0, -1))
+        first = float(store.field.times[0])
+        last = float(store.field.times[-1])
         rounds = (last - first) * textures.typical_speed / textures.geometry.extent
         period = (last - first) / (np.floor(rounds + 0.5) or rounds)
         # Whole turns count for nothing, and single precision holds no more.
@@ -266,8 +267,10 @@ def _noise_origin(focus: Floats, finest: float, anchor: Floats) -> Values:
 
 
 def _image(image: ImageTextures, settings: Settings, density: float) -> Values:
-    height, width = (n * density for n in image.step.shape)
-    rows, columns = (n * density * settings.tiles for n in image.texels.shape[:2])
+    height = image.step.shape[0] * density
+    width = image.step.shape[1] * density
+    rows = image.texels.shape[0] * density * settings.tiles
+    columns = image.texels.shape[1] * density * settings.tiles
     return {
         "u_stepSize": (float(width), float(height)),
         "u_imageSize": (float(columns), float(rows)),

@@ -62,7 +62,8 @@ class NodeDisplacements:
     def __call__(self, displacement: NDArray[np.floating], error: float = 0.0) -> Floats32:
         """Return displacements (C, J, I) of those (J, I, 2) in cells, up to an error."""
         rows, columns = self._shape
-        along_i, along_j = (displacement[..., c].astype(np.float32).ravel() for c in range(2))
+        along_i = displacement[..., 0].astype(np.float32).ravel()
+        along_j = displacement[..., 1].astype(np.float32).ravel()
         if self._linear:
             p, q = np.moveaxis(self._first, 1, 0)
             return np.asarray(p * along_i + q * along_j).reshape(-1, rows, columns)
@@ -76,7 +77,8 @@ class NodeDisplacements:
             apart = self._parted(along_i, along_j)
             straight, inside = self._straight(apart, along_i[apart], along_j[apart])
             # A bent path may lead around such nodes, but not as far away as the next part.
-            bent, near = (norm(moved.T.astype(float)) for moved in (result[:, apart], straight))
+            bent = norm(result[:, apart].T.astype(float))
+            near = norm(straight.T.astype(float))
             inside &= bent <= FARTHER * near
             result[:, apart] = np.where(inside, result[:, apart], straight)
         return result.reshape(-1, rows, columns)
@@ -281,10 +283,8 @@ class SurfaceGeometry(DrawnSurface):
     def of(cls, field: FlowField) -> SurfaceGeometry:
         """Lay out a field's surface."""
         levels = int(np.clip(np.log2(max(min(field.shape) / 4, 1)), 0, DEEPEST))
-        rows, columns = (
-            Padding.of(n, levels, periodic=p)
-            for n, p in zip(field.shape, field.periodic, strict=True)
-        )
+        rows = Padding.of(field.shape[0], levels, periodic=field.periodic[0])
+        columns = Padding.of(field.shape[1], levels, periodic=field.periodic[1])
         return cls(field, levels, rows, columns, field.surface)
 
     @classmethod

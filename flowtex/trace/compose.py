@@ -194,7 +194,8 @@ class _SliceLookup:
         self._pace = _corners(np.minimum, _greatest(np.abs(side.slices[0])))
         self._trust = np.zeros(self._pace.shape, np.float32)
         # The second differences at the corners of a cell take the nodes beside them.
-        rows, columns = (np.clip(np.arange(-1, n + 1), 0, n - 1) for n in counts.shape)
+        rows = np.clip(np.arange(-1, counts.shape[0] + 1), 0, counts.shape[0] - 1)
+        columns = np.clip(np.arange(-1, counts.shape[1] + 1), 0, counts.shape[1] - 1)
         least = _corners(np.minimum, counts[np.ix_(rows, columns)][None])
         self._filled = _corners(np.minimum, _corners(np.minimum, least))
         self._longest = self._capped = np.empty(0, np.float32)
@@ -455,7 +456,11 @@ class _Doubling:
         )
         # Pieces are in order, and only the first in which a path ends counts.
         which, first = np.unique(which, return_index=True)
-        start, length, rest, left, step = (p[..., first] for p in (start, length, rest, left, step))
+        start = start[..., first]
+        length = length[..., first]
+        rest = rest[..., first]
+        left = left[..., first]
+        step = step[..., first]
         shares = np.linspace(0, 1, SEARCH_PARTS + 1, dtype=np.float32)[1:]
         lags = np.outer(shares, length).ravel()
         outside = self._outside(np.tile(start, SEARCH_PARTS), lags, np.tile(step, SEARCH_PARTS))

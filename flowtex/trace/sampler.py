@@ -428,7 +428,8 @@ class NodeGrid:
         """
         at, first = (corners.at + base, 0) if np.ndim(base) else (corners.at, int(base))
         # Products of complex numbers with complex ones are several times as fast.
-        s, t = (share.astype(data.dtype, copy=False) for share in (corners.s, corners.t))
+        s = corners.s.astype(data.dtype, copy=False)
+        t = corners.t.astype(data.dtype, copy=False)
         low = _between(data[first:], at, s)
         high = _between(data[first + self.columns :], at, s)
         high -= low

@@ -194,7 +194,8 @@ def changing_share(field: FlowField) -> float:
     if not valid.any():
         return 0.0
     velocity = field.velocity[:, j[:, None], i]
-    before, after = (np.asarray(velocity[steps])[:, valid] for steps in (t, t + 1))
+    before = np.asarray(velocity[t])[:, valid]
+    after = np.asarray(velocity[t + 1])[:, valid]
     spans = (field.times[t + 1] - field.times[t])[:, None]
     change = np.linalg.norm(after - before, axis=-1) / spans
     square = np.sum((0.5 * (before + after)) ** 2, axis=-1)

@@ -523,7 +523,6 @@ def _moved(field: FlowField, step: int, horizon: float) -> tuple[Floats, Bools]:
     followed = valid & ~((reach[0] < 1) & moving)
     if not slices.in_space:
         moved = field.surface.at(slices.nodes + moved) - field.points
-    before, after = (
-        true_positions(p, field.projection) for p in (field.points, field.points + moved)
-    )
+    before = true_positions(field.points, field.projection)
+    after = true_positions(field.points + moved, field.projection)
     return np.where(followed[..., None], after - before, np.nan), followed

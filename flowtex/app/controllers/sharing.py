@@ -312,7 +312,8 @@ class Job:
             pane.density = density * self._supersampling
         if self._annotations:
             layouts = self._annotate(np.zeros((*self._size[::-1], 3), np.uint8))
-            above, below = (max(getattr(each, n) for each in layouts) for n in ("above", "below"))
+            above = max(each.above for each in layouts)
+            below = max(each.below for each in layouts)
             self._rows = slice(above, self._size[1] - below)
 
     async def _draw(self, before: float, share: float) -> Bytes:

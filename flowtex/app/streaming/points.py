@@ -95,7 +95,8 @@ class PointReader:
         field = pane.field
         place = _numbers(request.get("place"), 2)
         if place is not None:
-            x, y = (min(max(v, -1.0), 1.0) for v in place)
+            x = min(max(place[0], -1.0), 1.0)
+            y = min(max(place[1], -1.0), 1.0)
             point = self._viewport.surface_point(x, y, pane_number)
             # Points on a flat surface are exact, so its border is as drawn.
             flat = pane.scene.whole.surface.frame is not None

@@ -87,7 +87,8 @@ class ViewPainter:
         scale = math.sqrt(share * most / pixels)
         self.complete = scale == 1.0
         if not self.complete:
-            width, height = (max(round(side * scale), 16) for side in (width, height))
+            width = max(round(width * scale), 16)
+            height = max(round(height * scale), 16)
         pictures = [self._quick(pane, width, height) for pane in panes]
         line = np.full((height, max(round(GAP_PX * scale), 1), 3), LINE_GREY, np.uint8)
         return np.hstack([pictures[0], *(part for p in pictures[1:] for part in (line, p))])
@@ -149,10 +150,8 @@ class FrameStream(AreaAdapter):
         sides = mapping(size)
         (least, most) = SIDES_PX
         ratio = clipped(sides.get("p"), 1.0, *PIXEL_RATIOS)
-        width, height = (
-            min(max(clipped(sides.get(side), least, least, most) * ratio, least), most)
-            for side in ("w", "h")
-        )
+        width = min(max(clipped(sides.get("w"), least, least, most) * ratio, least), most)
+        height = min(max(clipped(sides.get("h"), least, least, most) * ratio, least), most)
         shrink = min(1.0, (MOST_PIXELS / (width * height)) ** 0.5)
         new = round(width * shrink), round(height * shrink)
         if new != self._viewport.size:

@@ -210,7 +210,8 @@ def _grid_gradient(
             np.moveaxis(valid, pole.axis, 0)[pole.line] = False
 
     turns = [turn if is_closed else None for turn, is_closed in zip(offset, periodic, strict=True)]
-    p_i, p_j = (_difference(points, valid, axis, turns[axis]) for axis in (1, 0))
+    p_i = _difference(points, valid, 1, turns[1])
+    p_j = _difference(points, valid, 0, turns[0])
     for pole in poles:  # it has the directions of the line beside it
         lines = np.moveaxis((p_i, p_j)[pole.axis], pole.axis + 1, 0)
         lines[pole.line] = lines[pole.beside]
@@ -241,7 +242,8 @@ def _grid_derivative(
 ) -> Floats:
     """Return derivatives (2, C, J, I) of values at nodes, (C, J, I), by the cells per length."""
     turns = [np.zeros(len(nodal)) if is_closed else None for is_closed in periodic]
-    by_i, by_j = (_difference(nodal, valid, axis, turns[axis]) for axis in (1, 0))
+    by_i = _difference(nodal, valid, 1, turns[1])
+    by_j = _difference(nodal, valid, 0, turns[0])
     by_j *= cells[2]
     by_j += by_i * cells[1]
     by_i *= cells[0]
@@ -251,7 +253,8 @@ def _grid_derivative(
 def _difference(nodal: Floats, valid: Bools, axis: int, turn: Floats | None) -> Floats:
     """Return the difference per cell along an axis, of second order also beside gaps."""
     result = np.zeros_like(nodal)  # the ends of an open axis are halved before they are set
-    data, out = (np.swapaxes(a, 1, axis + 1) for a in (nodal, result))
+    data = np.swapaxes(nodal, 1, axis + 1)
+    out = np.swapaxes(result, 1, axis + 1)
     if axis:
         valid = valid.T
     is_central = np.zeros(valid.shape, dtype=bool)

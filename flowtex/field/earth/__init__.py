@@ -279,7 +279,8 @@ class Projection:
 
 def _mean(one: Floats, other: Floats) -> Floats:
     """Return the mean of two vectors, (..., 3), or one of them where the other crosses a tear."""
-    a, b = (np.linalg.norm(v, axis=-1)[..., None] for v in (one, other))
+    a = np.linalg.norm(one, axis=-1)[..., None]
+    b = np.linalg.norm(other, axis=-1)[..., None]
     with np.errstate(invalid="ignore"):
         alone = np.where((a > TORN * b) | ~np.isfinite(a), other, one)
         torn = (a > TORN * b) | (b > TORN * a) | (np.isfinite(a) != np.isfinite(b))
@@ -334,7 +335,8 @@ def graticule(projection: Projection, box: Floats | None = None) -> MapLines:
     if not len(lon):
         return MapLines(np.zeros((0, 3)), np.zeros(1, dtype=np.intp))
     steps = _steps(lon, lat)
-    meridians, parallels = (_grid_lines(lon, lat, steps, kind) for kind in (0, 1))
+    meridians = _grid_lines(lon, lat, steps, 0)
+    parallels = _grid_lines(lon, lat, steps, 1)
     lonlat = np.concatenate([meridians[0], parallels[0]])
     joined = np.concatenate([meridians[1], parallels[1]])
     return _mapped(projection, lonlat, joined[:-1], box)
@@ -411,7 +413,8 @@ def _mapped(projection: Projection, lonlat: Floats, joined: Bools, box: Floats |
     first, last, place = _pieces(lonlat, joined)
     torn, *sides = tears(projection, first, last)
     ends = first[torn], last[torn]
-    before, after = (between(*ends, share, straight=False) for share in sides)
+    before = between(*ends, sides[0], straight=False)
+    after = between(*ends, sides[1], straight=False)
     # Both parts of a torn piece follow each other, and are joined to pieces that are not torn.
     gap = np.full(int(torn.sum()), np.nan)
     (left, right) = place[~torn].T
@@ -427,8 +430,10 @@ def _mapped(projection: Projection, lonlat: Floats, joined: Bools, box: Floats |
     right = right[order]
     starts = projection.positions(*first.T)
     stops = projection.positions(*last.T)
-    begin, end = (Projection(GLOBE).positions(*places.T) for places in (first, last))
-    length, true = (np.linalg.norm(a, axis=1) for a in (stops - starts, end - begin))
+    begin = Projection(GLOBE).positions(*first.T)
+    end = Projection(GLOBE).positions(*last.T)
+    length = np.linalg.norm(stops - starts, axis=1)
+    true = np.linalg.norm(end - begin, axis=1)
     keep = length <= MOST_STRETCHED * true
     if box is not None:
         outside = ((starts < box[0]) & (stops < box[0])) | ((starts > box[1]) & (stops > box[1]))
@@ -446,7 +451,8 @@ def _pieces(lonlat: Floats, joined: Bools) -> tuple[Floats, Floats, Floats]:
     segment = np.repeat(np.arange(len(index)), counts)
     number = np.arange(len(segment)) - np.repeat(np.cumsum(counts) - counts, counts)
     part = np.stack([number, number + 1], axis=1) / counts[segment, None]
-    first, last = (start[segment] + steps[segment] * part[:, k, None] for k in (0, 1))
+    first = start[segment] + steps[segment] * part[:, 0, None]
+    last = start[segment] + steps[segment] * part[:, 1, None]
     return first, last, index[segment, None] + part
 
 
@@ -460,22 +466,27 @@ def tears(
     these the shares just before and just after the tear, (T,).
     """
     place = partial(between, straight=straight)
-    start, middle, stop = (
-        projection.positions(*place(first, last, np.full(len(first), share)).T)
-        for share in (0.0, 0.5, 1.0)
-    )
+    start = projection.positions(*place(first, last, np.full(len(first), 0.0)).T)
+    middle = projection.positions(*place(first, last, np.full(len(first), 0.5)).T)
+    stop = projection.positions(*place(first, last, np.full(len(first), 1.0)).T)
     length = np.linalg.norm(stop - start, axis=1)
     bend = np.linalg.norm(middle - (start + stop) / 2, axis=1)
     missing = np.isnan([start[:, 0], stop[:, 0]])
     torn = ~missing.all(axis=0) & ~(bend <= BENT * length)
-    first, last, length, bend, a, b = (x[torn] for x in (first, last, length, bend, start, stop))
+    first = first[torn]
+    last = last[torn]
+    length = length[torn]
+    bend = bend[torn]
+    a = start[torn]
+    b = stop[torn]
     low = np.zeros(len(first))
     high = np.ones(len(first))
     for _ in range(HALVINGS):
         half = (low + high) / 2
         m = projection.positions(*place(first, last, half).T)
         missing = np.isnan([a[:, 0], m[:, 0], b[:, 0]])
-        to_low, to_high = (np.linalg.norm(m - end, axis=1) for end in (a, b))
+        to_low = np.linalg.norm(m - a, axis=1)
+        to_high = np.linalg.norm(m - b, axis=1)
         is_low = np.where(missing.any(axis=0), missing[1] == missing[0], to_low < to_high)
         low = np.where(is_low, half, low)
         high = np.where(is_low, high, half)
@@ -491,7 +502,8 @@ def between(first: Floats, last: Floats, share: Floats, *, straight: bool) -> Fl
     share = share[:, None]
     if straight:
         globe = Projection(GLOBE)
-        one, other = (globe.positions(*end.T) for end in (first, last))
+        one = globe.positions(*first.T)
+        other = globe.positions(*last.T)
         place = np.stack(globe.lonlat((1 - share) * one + share * other), axis=-1)
     else:
         steps = last - first

@@ -131,9 +131,9 @@ def _coincide(points: Floats, extent: float) -> bool:
 
 def _one_cell_short(points: Floats) -> bool:
     """Return whether the gap between the last line and the first is one cell among others."""
-    first, last, gap = (
-        np.linalg.norm(points[a] - points[b], axis=-1) for a, b in ((1, 0), (-1, -2), (-1, 0))
-    )
+    first = np.linalg.norm(points[1] - points[0], axis=-1)
+    last = np.linalg.norm(points[-1] - points[-2], axis=-1)
+    gap = np.linalg.norm(points[-1] - points[0], axis=-1)
     finite = np.isfinite(gap)
     with np.errstate(invalid="ignore"):
         near = gap <= 1.5 * np.maximum(first, last)
@@ -219,7 +219,8 @@ def grid_nodes(
     raise_faults(faults)
     v = v[None] if v.ndim == 3 else v
     # Arguments are copied once, and not changed.
-    p, v = (three_components(a) if a.shape[-1] == 2 else a.copy("C") for a in (p, v))
+    p = three_components(p) if p.shape[-1] == 2 else p.copy("C")
+    v = three_components(v) if v.shape[-1] == 2 else v.copy("C")
     ok = finite_nodes(p) & ~masked_points
     ok &= finite_nodes(v) & ~masked_velocity
     if mask is not None:

@@ -76,7 +76,8 @@ class GridSurface(NodeSurface):
     @property
     def cell_lengths(self) -> Floats:
         """Length of each cell, (J - 1, I - 1): the diagonal of its longest sides."""
-        j, i = (norm(np.diff(self.points, axis=k)) for k in (0, 1))
+        j = norm(np.diff(self.points, axis=0))
+        i = norm(np.diff(self.points, axis=1))
         longest = np.maximum(j[:, :-1], j[:, 1:]), np.maximum(i[:-1], i[1:])
         return np.asarray(np.hypot(*longest))
 
@@ -301,10 +302,8 @@ class CubicMap:
         result = self._cubic(j0 * columns + i0, s, t, error)
         outside = np.flatnonzero((beyond_i != 0) | (beyond_j != 0))
         if len(outside):
-            node_i, node_j = (
-                cell[outside] + np.rint(share[outside]).astype(np.intp)
-                for cell, share in ((i0, s), (j0, t))
-            )
+            node_i = i0[outside] + np.rint(s[outside]).astype(np.intp)
+            node_j = j0[outside] + np.rint(t[outside]).astype(np.intp)
             by_i, by_j = np.moveaxis(self.tangents[..., node_j * columns + node_i], 1, 0)
             result[:, outside] += beyond_i[outside] * by_i + beyond_j[outside] * by_j
         for turns, offset in ((turns_j, self._offset[0]), (turns_i, self._offset[1])):
@@ -386,7 +385,8 @@ def _beyond(p: Floats, good: Bools) -> Floats:
     if len(p) < 3:
         return np.asarray(p[0] - step)
     bend = np.where(np.asarray(good[:3].all(axis=0))[:, None], 2 * p[1] - p[0] - p[2], 0.0)
-    length, most = (np.linalg.norm(v, axis=-1, keepdims=True) for v in (bend, step))
+    length = np.linalg.norm(bend, axis=-1, keepdims=True)
+    most = np.linalg.norm(step, axis=-1, keepdims=True)
     bend *= most / np.maximum(np.maximum(length, most), np.finfo(float).tiny)
     return np.asarray(p[0] - step - bend)
 

@@ -114,9 +114,8 @@ class Pole:
         depth = self.depth(position) * self.inward
         straight = position[a]
         across = self.opposite(position[a])
-        straight, across = (
-            x + self.cells * np.rint((near[a] - x) / self.cells) for x in (straight, across)
-        )
+        straight = straight + self.cells * np.rint((near[a] - straight) / self.cells)
+        across = across + self.cells * np.rint((near[a] - across) / self.cells)
         closer = np.abs(across - near[a]) - np.abs(straight - near[a])
         over = np.where(np.abs(closer) > EVEN_CELLS, closer < 0, beyond)
         result = np.empty_like(position)
@@ -207,7 +206,9 @@ def find_poles(
         axis = 0
     else:
         axis = 1
-    p, has_position, data = (np.swapaxes(a, 0, axis) for a in (points, usable, valid))
+    p = np.swapaxes(points, 0, axis)
+    has_position = np.swapaxes(usable, 0, axis)
+    data = np.swapaxes(valid, 0, axis)
     if len(p) < 3:
         return None
     ends = []

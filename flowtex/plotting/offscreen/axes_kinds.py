@@ -388,7 +388,8 @@ def with_polar_scalars(field: FlowField, frame: Floats, name: str | None) -> Flo
 
 
 def _missed(values: Floats) -> FieldError:
-    low, high = (of(values.reshape(-1, 2), axis=0) for of in (np.min, np.max))
+    low = np.min(values.reshape(-1, 2), axis=0)
+    high = np.max(values.reshape(-1, 2), axis=0)
     return FieldError(
         f"x is from {low[0]:g} to {high[0]:g} and y from {low[1]:g} to {high[1]:g}; expected "
         "values that the axes have: positive ones on a logarithmic scale, radii beyond the centre's"

@@ -582,10 +582,8 @@ def _limit(ax: Any, left: float, right: float, bottom: float, top: float) -> Non
     kind, _, scale = _kind(ax)
     if is_geo(ax):
         limits = ax.projection
-        (left, right), (bottom, top) = (
-            np.clip((low, high), *sorted(most)).tolist()
-            for low, high, most in ((left, right, limits.x_limits), (bottom, top, limits.y_limits))
-        )
+        left, right = np.clip((left, right), *sorted(limits.x_limits)).tolist()
+        bottom, top = np.clip((bottom, top), *sorted(limits.y_limits)).tolist()
     if kind == "polar":  # all around the centre
         left, right = ax.get_xlim()
         if scale == "linear":

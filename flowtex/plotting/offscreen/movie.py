@@ -88,7 +88,8 @@ def frame_times(
         if chosen == (TABLE["speed"].default, TABLE["speed_in"].default):
             speed = max(speed, WAVE_PIXELS / duration)
         return FrameTimes((), clocks, fps, duration, closed=True, speed=speed)
-    start, end = (np.nan_to_num(field.velocity[step]) for step in (0, -1))
+    start = np.nan_to_num(field.velocity[0])
+    end = np.nan_to_num(field.velocity[-1])
     closed = bool(np.abs(end - start).max() <= SAME_SHARE * max(np.abs(start).max(), 1e-300))
     first = float(field.times[0])
     last = float(field.times[-1])

@@ -124,7 +124,8 @@ class OffscreenPlotter:
         ground = self._plotter.background_color.int_rgb
         self._canvas = np.full((height, width, 3), ground, np.uint8)
         layouts = self._annotate(self._canvas.copy())
-        above, below = (max(getattr(each, n) for each in layouts) for n in ("above", "below"))
+        above = max(each.above for each in layouts)
+        below = max(each.below for each in layouts)
         if left_out := dict.fromkeys(name for each in layouts for name in each.left_out):
             notify(f"a picture of {width} x {height} has no room for: {', '.join(left_out)}")
         if above or below:

@@ -124,7 +124,10 @@ class FlowSurface:
     @property
     def meshes(self) -> list[pv.PolyData]:
         """Meshes that the last frame has drawn: the surface's own mesh, and those of tiles."""
-        shown = [tile.mesh for tile in self._tiles.values() if tile.actor.GetNumberOfConsumers()]
+        shown = []
+        for tile in self._tiles.values():
+            if tile.actor.GetNumberOfConsumers():
+                shown.append(tile.mesh)
         return [self._actor.mapper.dataset, *shown]
 
     @property

@@ -171,7 +171,10 @@ class FlowLayer:
         old_time = self.view.time
         if (before, after) != self._steps:
             old = dict(zip(self._steps, ("u_slices", "u_slicesNext"), strict=True))
-            reused = {old[s]: self._gpu.pop(old[s], None) for s in (before, after) if s in old}
+            reused = {}
+            for s in (before, after):
+                if s in old:
+                    reused[old[s]] = self._gpu.pop(old[s], None)
             self._retire("u_slices", "u_slicesNext")
             for step, name in ((before, "u_slices"), (after, "u_slicesNext")):
                 texture = reused.get(old.get(step, ""))

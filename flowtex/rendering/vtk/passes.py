@@ -122,7 +122,10 @@ class DeferredPasses:
         owners = [owner for owner in self._shown if owner not in self._hidden]
         surfaces = []
         for owner in owners:
-            layers = [layer for layer in self._shown[owner] if layer.deferred]
+            layers = []
+            for layer in self._shown[owner]:
+                if layer.deferred:
+                    layers.append(layer)
             if layers:
                 surfaces.append(layers)
         return surfaces

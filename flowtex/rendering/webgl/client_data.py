@@ -351,10 +351,12 @@ class ClientData:
         flat |= {colours.number} if colours.flat else set()
         steps = list(self.chosen) or slice(None)
         drawn = self.textures.geometry.drawn_values
-        return {
-            number: drawn(nodal[steps if len(nodal) > 1 else slice(None)], on_cells=number in flat)
-            for number, nodal in values.items()
-        }
+        found = {}
+        for number, nodal in values.items():
+            found[number] = drawn(
+                nodal[steps if len(nodal) > 1 else slice(None)], on_cells=number in flat
+            )
+        return found
 
     @cached_property
     def _mesh(self) -> Floats32:

@@ -113,17 +113,16 @@ def _lines_of(geometry: DrawnSurface, *, has_land: bool) -> _Lines:
 
     def make() -> _Lines:
         lines_by_option = map_lines(field, has_globe=has_globe)
-        local = {
-            k: (v.points - geometry.center) @ geometry.frame.T for k, v in lines_by_option.items()
-        }
+        local = {}
+        for k, v in lines_by_option.items():
+            local[k] = (v.points - geometry.center) @ geometry.frame.T
         points = np.concatenate([*local.values(), np.zeros((1, 3))])
         low = points.min(axis=0)
         size = np.ptp(points, axis=0)
-        parts = {
-            name: _packed(lines, (local[name] - low) / np.where(size > 0, size, 1.0))
-            for name, lines in lines_by_option.items()
-            if len(lines.points)
-        }
+        parts = {}
+        for name, lines in lines_by_option.items():
+            if len(lines.points):
+                parts[name] = _packed(lines, (local[name] - low) / np.where(size > 0, size, 1.0))
         return _Lines(low, size, parts)
 
     return _lines.get(has_globe, make, owner=field)
@@ -144,7 +143,8 @@ def _lonlat(projection: Projection, box: bytes) -> Floats32:
     low, high = np.frombuffer(box).reshape(2, 3)[:, :2]
     spacing = max(float((high - low).max()) / (LONLAT_PLACES - 1), NEAREST_PLACES_M)
     counts = np.maximum(np.rint((high - low) / spacing).astype(int) + 1, FEWEST_PLACES)
-    x, y = (np.linspace(low[k], high[k], counts[k]) for k in range(2))
+    x = np.linspace(low[0], high[0], counts[0])
+    y = np.linspace(low[1], high[1], counts[1])
     points = np.stack([*np.meshgrid(x, y), np.zeros((counts[1], counts[0]))], axis=-1)
     a, b = np.radians(projection.lonlat(points))
     directions = np.stack([np.cos(b) * np.cos(a), np.cos(b) * np.sin(a), np.sin(b)], axis=-1)

@@ -291,7 +291,9 @@ def client_formula(textures: TextureSet) -> Formula | None:
 
 def formula_header(formula: Formula, shape: tuple[int, int]) -> Header:
     """Return a formula's part of the header, for a root of this many nodes (J, I)."""
-    shapes = [[(n - 1) * 2 ** (DEPTH - level) + 1 for n in shape] for level in range(DEPTH + 1)]
+    shapes = []
+    for level in range(DEPTH + 1):
+        shapes.append([(n - 1) * 2 ** (DEPTH - level) + 1 for n in shape])
     return {
         "formula": {
             "trees": [each.tree for each in formula.expressions],
@@ -314,12 +316,14 @@ def formula_header(formula: Formula, shape: tuple[int, int]) -> Header:
 
 def parameter_rows(formula: Formula) -> list[Header]:
     """Return the parameters as rows of the table of settings."""
-    return [
-        {
-            **{"name": PREFIX + name, "label": name, "default": each.value, "low": each.low},
-            **{"high": each.high, "affects": "uniform", "text": "A parameter of the formula."},
-            **{"logarithmic": False, "condition": "", "control": "slider", "whole": False},
-            **{"choices": [], "needs": []},
-        }
-        for name, each in formula.parameters.items()
-    ]
+    found = []
+    for name, each in formula.parameters.items():
+        found.append(
+            {
+                **{"name": PREFIX + name, "label": name, "default": each.value, "low": each.low},
+                **{"high": each.high, "affects": "uniform", "text": "A parameter of the formula."},
+                **{"logarithmic": False, "condition": "", "control": "slider", "whole": False},
+                **{"choices": [], "needs": []},
+            }
+        )
+    return found

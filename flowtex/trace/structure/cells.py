@@ -80,9 +80,12 @@ def triangle_indices(
     """
     turned = np.full(len(triangles), 2 * np.pi)
     for k in range(3):
-        start, end, last = (triangles[:, (k + n) % 3] for n in range(3))
+        start = triangles[:, k % 3]
+        end = triangles[:, (k + 1) % 3]
+        last = triangles[:, (k + 2) % 3]
         edge = points[end] - points[start]
-        at_start, at_end = (_angle(velocity[n], edge, normals[n]) for n in (start, end))
+        at_start = _angle(velocity[start], edge, normals[start])
+        at_end = _angle(velocity[end], edge, normals[end])
         turned += folded(at_end - at_start)
         # The edges themselves turn once; what is missing from that is curvature.
         turned -= folded(_angle(points[last] - points[end], edge, normals[end]))

@@ -289,7 +289,8 @@ def _at_pole(field: FlowField, pole: Pole) -> list[CriticalPoint]:
     normal = np.cross(along, across)
     normal /= np.maximum(np.linalg.norm(normal, axis=-1, keepdims=True), np.finfo(float).tiny)
     flow = field.velocity[0] - (field.velocity[0] * normal).sum(axis=-1, keepdims=True) * normal
-    points, velocity = (pole.lines(a) for a in (field.points, flow))
+    points = pole.lines(field.points)
+    velocity = pole.lines(flow)
     ring = pole.line + pole.inward
     center = points[pole.line, 0]
     near = points[ring]
@@ -333,9 +334,8 @@ def _on_triangles(field: FlowField) -> list[CriticalPoint]:
     # A single node at rest gets the least of its neighbours' velocities: one triangle has the zero.
     alone = triangles[rest[triangles].any(axis=1)]
     corner = np.argmax(rest[alone], axis=1)
-    first, second = (
-        velocity[np.take_along_axis(alone, (corner[:, None] + k) % 3, 1)[:, 0]] for k in (1, 2)
-    )
+    first = velocity[np.take_along_axis(alone, (corner[:, None] + 1) % 3, 1)[:, 0]]
+    second = velocity[np.take_along_axis(alone, (corner[:, None] + 2) % 3, 1)[:, 0]]
     resting_nodes = np.take_along_axis(alone, corner[:, None], 1)[:, 0]
     velocity[resting_nodes] = LEAST_SHARE * (0.62 * first + 0.38 * second)
     corners = points[triangles]

@@ -150,7 +150,8 @@ def _starts(rates: Rates) -> tuple[Floats, Floats, Floats]:
     values = rates.at(nodes.reshape(-1, 2)).reshape(nodes.shape)
     values[~np.isfinite(values)] = np.nan
     around = sliding_window_view(np.pad(values, ((1, 1), (1, 1), (0, 0)), "edge"), (4, 4), (0, 1))
-    top, bottom = (extreme.reduce(around, axis=(-2, -1)) for extreme in (np.fmax, np.fmin))
+    top = np.fmax.reduce(around, axis=(-2, -1))
+    bottom = np.fmin.reduce(around, axis=(-2, -1))
     least = np.fmin.reduce(np.abs(around[..., 1:3, 1:3]), axis=(-2, -1))
     scale = np.maximum(np.abs(top), np.abs(bottom))
     chosen = (least <= top - bottom).all(axis=-1)
@@ -477,7 +478,8 @@ def view_window(field: FlowField, focus: Floats, visible: float) -> Floats | Non
 def _of_formula(rates: Rates, window: Floats) -> tuple[Floats, Floats]:
     sides = np.ptp(window, axis=1)
     counts = np.maximum(np.round(LINE_CELLS * sides / sides.max()), LEAST_CELLS).astype(int)
-    x, y = (np.linspace(window[k, 0], window[k, 1], counts[k] + 1) for k in range(2))
+    x = np.linspace(window[0, 0], window[0, 1], counts[0] + 1)
+    y = np.linspace(window[1, 0], window[1, 1], counts[1] + 1)
     nodes = np.stack([*np.meshgrid(x, y), np.zeros((len(y), len(x)))], axis=-1)
     number = np.arange(len(x) * len(y)).reshape(len(y), len(x))
     a = number[:-1, :-1]

@@ -369,7 +369,8 @@ class ChangingMotion(Motion):
         """Return derivatives, see :meth:`Motion.at`."""
         velocity, change, until = self._corners(self.mesh.corners.take(triangle, axis=0), lag)
         rates = np.ascontiguousarray(self.mesh.rates.take(triangle, axis=0).T)
-        law, later = (_linear(rates.reshape(3, 2, 2, -1), part) for part in (velocity, change))
+        law = _linear(rates.reshape(3, 2, 2, -1), velocity)
+        later = _linear(rates.reshape(3, 2, 2, -1), change)
         first = law[0] + law[1] * shares[0] + law[2] * shares[1]
         bend = law[1] * first[0] + law[2] * first[1]
         second = bend + later[0] + later[1] * shares[0] + later[2] * shares[1]

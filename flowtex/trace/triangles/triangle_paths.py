@@ -114,7 +114,10 @@ def begin(motion: Motion, nodes: Indices) -> tuple[Indices, Bools]:
     in another one, if the velocity there leads into that, and else it ends at once.
     """
     mesh = motion.mesh
-    inwards, sizes, speeds, alongs = (np.empty(mesh.corners.shape) for _ in range(4))
+    inwards = np.empty(mesh.corners.shape)
+    sizes = np.empty(mesh.corners.shape)
+    speeds = np.empty(mesh.corners.shape)
+    alongs = np.empty(mesh.corners.shape)
     slip = np.maximum(mesh.slip.reshape(-1, 3), 0.0).T
     with np.errstate(all="ignore"):
         for corner in range(3):
@@ -225,7 +228,9 @@ class _Run:
         now = self.motion.at(state.triangle, state.shares, state.lag, state.last)
         self._keep_to_edges(now)
         square = dot(now.metric, now.first, now.first)
-        at, rate, bent = (_three(part) for part in (state.shares, now.first, 0.5 * now.second))
+        at = _three(state.shares)
+        rate = _three(now.first)
+        bent = _three(0.5 * now.second)
         at[0] += 1
         h, edge = _exit(np.maximum(at, 0.0), rate, bent)
         lag, h = self._limited(now, square, h, edge)
@@ -334,7 +339,8 @@ class _Run:
         """Return triangles (n,) behind the edges of particles, their edges, and shares (2, n)."""
         shares = all_shares(self.state.shares[:, at])
         count = np.arange(len(at))
-        one, two = (np.maximum(shares[(edge + step) % 3, count], 0.0) for step in (1, 2))
+        one = np.maximum(shares[(edge + 1) % 3, count], 0.0)
+        two = np.maximum(shares[(edge + 2) % 3, count], 0.0)
         share = one / (one + two)
         layout = code & 7
         beyond = NEXT[:, layout] * share + AFTER[:, layout] * (1 - share)
@@ -492,7 +498,8 @@ def _sum_of_speeds(begin: Floats, middle: Floats, end: Floats) -> Floats:
 def _inward(now: Derivatives, at: Indices, edge: Indices) -> Bools:
     """Return whether particles at edges move into their triangles, or along the edge."""
     count = np.arange(len(at))
-    rate, bent = (_three(part[:, at])[edge, count] for part in (now.first, now.second))
+    rate = _three(now.first[:, at])[edge, count]
+    bent = _three(now.second[:, at])[edge, count]
     few = EDGE_ROUNDING * np.abs(now.first[:, at]).sum(axis=0)
     return np.asarray((rate > few) | ((rate >= -few) & (bent >= 0)))
 

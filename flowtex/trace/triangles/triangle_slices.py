@@ -363,9 +363,9 @@ class _Search:
         e = second - first
         f = third - first
         with np.errstate(all="ignore"):
-            ee, ef, ff = (
-                np.einsum("mc,mc->m", *pair)[:, None] for pair in ((e, e), (e, f), (f, f))
-            )
+            ee = np.einsum("mc,mc->m", e, e)[:, None]
+            ef = np.einsum("mc,mc->m", e, f)[:, None]
+            ff = np.einsum("mc,mc->m", f, f)[:, None]
             slopes = [ff * e - ef * f, ee * f - ef * e] / (ee * ff - ef * ef)
             normals = np.cross(e, f)
             normals /= np.linalg.norm(normals, axis=1, keepdims=True)
@@ -391,7 +391,8 @@ class _Search:
                 mark = triangle
             row = np.ascontiguousarray(self._table.take(triangle, axis=0).T)
             away = place - row[:3]
-            second, third = (np.einsum("cn,cn->n", row[k : k + 3], away) for k in (3, 6))
+            second = np.einsum("cn,cn->n", row[3:6], away)
+            third = np.einsum("cn,cn->n", row[6:9], away)
             current = np.stack([1 - second - third, second, third])
             result[which], shares[:, which] = triangle, current
             out = np.flatnonzero(np.minimum(np.minimum(*current[:2]), current[2]) < -ROUNDING)
