@@ -260,7 +260,7 @@ def join_faces(
 
     ``chosen`` are axes along which one entry is selected, and ``wanted`` the directions of the
     components, if they are given. Coordinates along a part of the axes only count the nodes, and
-    are dropped.
+    are dropped. Raises a FieldError for components along rows and columns.
     """
     u = pair.u
     sizes = {str(d): n for d, n in u.sizes.items() if FACES_OF_GLOBE.match(str(d))}
@@ -268,16 +268,30 @@ def join_faces(
     if not face:
         return None
     if (wanted or pair.along) != "earth":
-        raise FieldError(
-            f"{u.name} and {pair.v.name} lie along the rows and columns of each of {sizes[face]} "
-            f"faces ({face}), as no standard name says eastward and northward; compute these "
-            f"components, or select one face, as in isel={{{face!r}: 0}}"
-        )
+        raise FieldError(_along_faces(pair, face, sizes[face]))
     for lon, _ in position_pairs([ds[name] for ds in datasets for name in ds.variables]):
         dims = {str(d) for d in lon.dims}
         if lon.ndim == 3 and face in dims:
             return [_one_dimension(ds, dims) if dims <= set(ds.dims) else ds for ds in datasets]
     return None
+
+
+def _along_faces(pair: Pair, face: str, count: int) -> str:
+    """Return the text of an error for components along the rows and columns of faces."""
+    u = str(pair.u.name)
+    v = str(pair.v.name)
+    text = (
+        f"{u} and {v} lie along the rows and columns of each of {count} faces ({face}), as no "
+        "standard name says eastward and northward. "
+    )
+    if pair.u.dims != pair.v.dims:
+        text += f"Bring {u} and {v} to the middle of cells, as with xgcm, and turn them there: "
+    else:
+        text += "Turn them by the cosine and sine of the angle of the rows, such as CS and SN: "
+    return (
+        f"{text}east = {u} * CS - {v} * SN, north = {u} * SN + {v} * CS, and name these, as in "
+        f"u='east', v='north', components='earth'. Or select one face: isel={{{face!r}: 0}}"
+    )
 
 
 def _one_dimension(ds: xr.Dataset, face: set[str]) -> xr.Dataset:

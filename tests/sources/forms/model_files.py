@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import xarray as xr
-from known_flow import Truth, wind
+from known_flow import EAST_AT_SEA, NORTH_AT_SEA, Truth, on_earth, wind
 from mesh_files import points, truth, vectors
 from supported import Made, supported
 
@@ -79,3 +79,26 @@ def telemac(folder: Path) -> Made:
         warnings.simplefilter("ignore")
         ds.selafin.write(str(folder / "telemac.slf"))
     return {}, truth(undated=True)
+
+
+@supported(
+    "Models on faces",
+    "cubed spheres and LLC grids: eastward and northward on (face, j, i)",
+    "flowtex.show(ds, globe=True)",
+    "all faces as one surface; streaks cross their borders",
+)
+def faces_of_a_cube(folder: Path) -> Made:
+    count = 6
+    line = np.tan(np.linspace(-np.pi / 4, np.pi / 4, 2 * count + 1)[1::2])
+    p, q = np.meshgrid(line, line)
+    one = np.ones_like(p)
+    faces = ((one, p, q), (-p, one, q), (-one, -p, q), (p, -one, q), (-q, p, one), (q, p, -one))
+    x, y, z = np.moveaxis(np.array(faces), 1, 0)
+    lon, lat = np.degrees(np.arctan2(y, x)), np.degrees(np.arctan2(z, np.hypot(x, y)))
+    u, v = wind(lon, lat)
+    dims = ("face", "j", "i")
+    ds = xr.Dataset(
+        {"EVEL": (dims, u, EAST_AT_SEA), "NVEL": (dims, v, NORTH_AT_SEA)},
+        {"lon": (dims, lon), "lat": (dims, lat)},
+    )
+    return {"ds": ds}, on_earth(lon, lat)

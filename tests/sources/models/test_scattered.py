@@ -98,6 +98,24 @@ def test_components_along_rows_of_faces_raise() -> None:
     assert faults(FlowField.from_xarray(ds, components="earth", globe=True)) < 1e-6
 
 
+def test_the_advice_for_components_along_rows_of_faces_works() -> None:
+    """As of LLC grids, whose files have the cosine and the sine of the angle of rows."""
+    ds = cube()
+    angle = xr.DataArray(RANDOM.uniform(0, 6, ds.U.shape), dims=ds.U.dims)
+    cos, sin = np.cos(angle), np.sin(angle)
+    rows = ds.assign(U=ds.U * cos + ds.V * sin, V=ds.V * cos - ds.U * sin, CS=cos, SN=sin)
+    with pytest.raises(FieldError, match=r"east = U \* CS - V \* SN, north = U \* SN") as error:
+        FlowField.from_xarray(rows, globe=True)
+    east, north = (
+        eval(formula, {name: rows[name] for name in ("U", "V", "CS", "SN")})
+        for formula in ("U * CS - V * SN", "U * SN + V * CS")
+    )
+    assert "components='earth'" in str(error.value)
+    named = {"u": "east", "v": "north", "components": "earth"}
+    turned = rows.assign(east=east, north=north)
+    assert faults(FlowField.from_xarray(turned, **named, globe=True)) < 1e-6
+
+
 def test_no_triangle_spans_the_notch() -> None:
     p = RANDOM.uniform(-1, 1, (3000, 2))
     p = flat(p[~((p > 0).all(axis=1))])
