@@ -35,7 +35,18 @@ FieldError.__module__ = "flowtex"  # where it is public, as tracebacks show it
 
 
 def raise_faults(faults: Sequence[str]) -> None:
-    """Raise a FieldError with all faults, if there are any."""
+    """Raise one error with all faults; do nothing without faults.
+
+    Parameters
+    ----------
+    faults
+        One sentence for each fault.
+
+    Raises
+    ------
+    FieldError
+        When there is at least one fault.
+    """
     if not faults:
         return
     if len(faults) == 1:
@@ -59,7 +70,25 @@ def notify(text: str, kind: type[Warning] = Notice) -> None:
 
 
 def import_extra(module: str, extra: str) -> Any:
-    """Import a module that needs an extra; the error names the command that installs it."""
+    """Import a module that needs an extra.
+
+    Parameters
+    ----------
+    module
+        Name of the module, such as ``"zarr.storage"``.
+    extra
+        Extra that installs it, such as ``"store"``.
+
+    Returns
+    -------
+    module
+        The module.
+
+    Raises
+    ------
+    ModuleNotFoundError
+        When its package is not installed; the error names the command that installs it.
+    """
     try:
         return import_module(module)
     except ModuleNotFoundError as error:
@@ -94,7 +123,18 @@ def import_package(package: str, what: str) -> Any:
 
 
 def require_pyvista(what: str) -> None:
-    """Import PyVista, or raise an error that names the functions that work without it."""
+    """Check that PyVista and VTK can be imported.
+
+    Parameters
+    ----------
+    what
+        What needs them, as the first words of the error.
+
+    Raises
+    ------
+    ModuleNotFoundError
+        When one of them is missing; the error names functions that work without.
+    """
     try:
         import_module("pyvista")
     except ModuleNotFoundError as error:

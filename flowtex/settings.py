@@ -76,7 +76,13 @@ class Setting:
     switch: float | None = None
 
     def check(self, value: Any) -> Any:
-        """Return the value in the setting's type; raise a SettingsError if it is invalid."""
+        """Return the value in the setting's type.
+
+        Raises
+        ------
+        SettingsError
+            When the value has another type, or is not in the range or among the choices.
+        """
         if type(value) is self.kind and value == self.default:
             return value
         if self.switch is not None and isinstance(value, bool):
@@ -381,7 +387,13 @@ class Settings:
 
 
 def setting(name: str) -> Setting:
-    """Return a row of the table; a SettingsError lists the nearest names, or all."""
+    """Return a row of the table of settings.
+
+    Raises
+    ------
+    SettingsError
+        When no setting has this name; the error lists the nearest names, or all.
+    """
     if name in TABLE:
         return TABLE[name]
     raise SettingsError(f"the setting {name!r} does not exist; {near_names(name, TABLE)}")

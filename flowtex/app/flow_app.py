@@ -228,7 +228,27 @@ class Viewpoint(Controller):
 
 
 def first_choice(library: Library, options: Mapping[str, Any]) -> tuple[str, Choice]:
-    """Return the first flow that can be shown and its chosen part, or raise the first error."""
+    """Return the first flow that can be shown, and its chosen part.
+
+    Parameters
+    ----------
+    library
+        The flows, in the order in which they are tried.
+    options
+        Arguments of the application; ``CHOICE_ARGUMENTS`` among them choose the part.
+
+    Returns
+    -------
+    tuple of str and Choice
+        Name of the flow in the library, and its part.
+
+    Raises
+    ------
+    FieldError
+        When no flow can be shown: the error of the first one.
+    OSError
+        Likewise, when the file of the first flow cannot be read.
+    """
     partial_choice = Choice(
         *("" if (value := options.get(key)) is None else str(value) for key in CHOICE_ARGUMENTS)
     )
@@ -319,7 +339,22 @@ def serve(
 
 
 def app_maker(field: Any, folder: str | Path | None, options: dict[str, Any]) -> MakeApp:
-    """Return a function that makes an application for each page."""
+    """Return a function that makes an application for each page.
+
+    Parameters
+    ----------
+    field
+        What the pages show, as for ``flowtex.app.serve``, or a function that makes applications.
+    folder
+        Folder whose files visitors can choose.
+    options
+        Further arguments of :class:`FlowApp`; arguments of reading are removed from it.
+
+    Raises
+    ------
+    FieldError
+        When ``field`` is a function and options or a folder are given as well.
+    """
     if callable(field):
         names = [*options, *(["folder"] if folder is not None else [])]
         if names:

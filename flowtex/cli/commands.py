@@ -74,6 +74,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
     It is 0 for success, 2 for an error that the user can correct, and 1 if OpenGL is missing or
     ``doctor`` finds that something is missing; after Ctrl-C, SIGTERM and SIGHUP it is 128 plus the
     number of the signal.
+
+    Raises
+    ------
+    Exception
+        With ``--debug`` any error, otherwise only those that are defects of the program.
     """
     words = list(sys.argv[1:] if arguments is None else arguments)
     if isinstance(sys.stdout, io.TextIOWrapper):

@@ -76,7 +76,22 @@ def describe(field: FlowField) -> str:
 
 
 def load_field(files: Sequence[Path], choice: Mapping[str, Any]) -> FlowField:
-    """Return the flow of a file, or of several that belong together."""
+    """Return the flow of a file, or of several that belong together.
+
+    Parameters
+    ----------
+    files
+        Paths of the files.
+    choice
+        Arguments of :class:`FieldOptions`, and ``time``.
+
+    Raises
+    ------
+    UsageError
+        When no file is given.
+    FieldError
+        When a file cannot be read, or lacks what is chosen.
+    """
     if not files:
         raise UsageError("no file is given; name one")
     options = dict(choice)
@@ -89,7 +104,15 @@ def load_field(files: Sequence[Path], choice: Mapping[str, Any]) -> FlowField:
 
 
 def check_picture_file(output: Path) -> None:
-    """Raise an error if the picture could not be written, before anything is drawn."""
+    """Check that an image could be written, before anything is drawn.
+
+    Raises
+    ------
+    UsageError
+        When Pillow writes no images with this suffix.
+    FieldError
+        When the folder does not exist or cannot be written.
+    """
     from PIL import Image
 
     Image.init()
@@ -115,7 +138,13 @@ def drawing(*groups: object) -> dict[str, Any]:
 
 
 def require_app() -> None:
-    """Raise an error if a package that pages need is not installed."""
+    """Check that the packages of the app are installed.
+
+    Raises
+    ------
+    UsageError
+        When one of them is missing; the error names the command that installs it.
+    """
     packages = ("trame", "trame_vuetify", "trame_rca")
     missing = []
     for name in packages:
@@ -130,7 +159,13 @@ def require_app() -> None:
 
 @contextmanager
 def writing(output: object) -> Iterator[None]:
-    """Turn errors of the disk into one that names the file."""
+    """Turn errors of the disk inside a ``with`` block into one that names the file.
+
+    Raises
+    ------
+    UsageError
+        When the block raises an OSError.
+    """
     try:
         yield
     except OSError as error:

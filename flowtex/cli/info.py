@@ -23,7 +23,13 @@ MOST_TIMES = 8
 
 
 def info(*files: FILE, flow: Annotated[FieldFlags | None, FLAT] = None) -> int:
-    """Describe the contents of a file, and the flow that would be drawn."""
+    """Describe the contents of a file, and the flow that would be drawn.
+
+    Raises
+    ------
+    UsageError
+        When no file is given.
+    """
     from rich.table import Table
     from rich.text import Text
 

@@ -202,7 +202,13 @@ class ServeFlags(AddressFlags):
 
 
 def arguments(*groups: object) -> dict[str, Any]:
-    """Return the flags that were set, as arguments of Python functions."""
+    """Return the flags that were set, as arguments of Python functions.
+
+    Raises
+    ------
+    UsageError
+        When the text of a flag cannot be read, as in ``--at 1,x``.
+    """
     forms = {**FORMS, "time": Form(read=number_or_text)}
     forms |= {row.name: Form(read=row.parse) for row in TABLE.values() if row.switch is not None}
     values = {name: value for group in groups if group for name, value in vars(group).items()}
@@ -223,7 +229,13 @@ def arguments(*groups: object) -> dict[str, Any]:
 
 
 def pixels(size: str) -> tuple[int, int]:
-    """Return width and height."""
+    """Return width and height of a text such as ``"1024x768"``.
+
+    Raises
+    ------
+    UsageError
+        When the text is not two whole numbers from 1 to 16384 with an ``x`` between.
+    """
     words = size.lower().replace("×", "x").split("x")
     if len(words) != 2 or not all(w.isdecimal() and 1 <= int(w) <= 16384 for w in words):
         raise UsageError(f"--size is {size!r}; expected width x height up to 16384, as in 1024x768")

@@ -73,7 +73,15 @@ def serve(
     look: Annotated[LookFlags | None, FLAT] = None,
     settings: Annotated[SettingFlags | None, FLAT] = None,
 ) -> int:
-    """Serve a page that streams a pyramid."""
+    """Serve a page that streams a pyramid.
+
+    Raises
+    ------
+    UsageError
+        When the store does not exist or is no pyramid.
+    ServeError
+        When the port cannot be used.
+    """
     options = drawing(look, settings)
     server = address or AddressFlags()
     require_app()
@@ -186,7 +194,13 @@ def pyramid(
     ] = None,
     flow: Annotated[FieldFlags | None, FLAT] = None,
 ) -> int:
-    """Build the pyramid of a file in a store; intact parts of an earlier build are kept."""
+    """Build the pyramid of a file in a store; intact parts of an earlier build are kept.
+
+    Raises
+    ------
+    UsageError
+        When a file or ``--output`` is missing, or the store cannot be written.
+    """
     from flowtex.pyramid import build
     from flowtex.pyramid.source import source_of
 

@@ -55,7 +55,13 @@ def demo(
     page: Annotated[ServeFlags | None, FLAT] = None,
     settings: Annotated[SettingFlags | None, FLAT] = None,
 ) -> int:
-    """Show the examples on a page in the browser."""
+    """Show the examples on a page in the browser.
+
+    Raises
+    ------
+    UsageError
+        When no example has this name.
+    """
     if example not in NAMES:
         raise UsageError(
             f"the example {example!r} does not exist; expected one of {', '.join(NAMES)}"

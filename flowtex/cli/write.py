@@ -105,7 +105,13 @@ def movie(
     frame: Annotated[FrameFlags | None, FLAT] = None,
     settings: Annotated[SettingFlags | None, FLAT] = None,
 ) -> int:
-    """Write a file as a movie: a seamless loop, or all times of a time-varying flow."""
+    """Write a file as a movie: a seamless loop, or all times of a time-varying flow.
+
+    Raises
+    ------
+    UsageError
+        When a package for the format is missing, or the file cannot be written.
+    """
     start = time.perf_counter()
     choice = arguments(flow)
     options = _drawing(look, frame or FrameFlags(), settings)
@@ -159,7 +165,13 @@ def export(
     look: Annotated[LookFlags | None, FLAT] = None,
     settings: Annotated[SettingFlags | None, FLAT] = None,
 ) -> int:
-    """Write a file as one HTML page that needs neither a server nor a network."""
+    """Write a file as one HTML page that needs neither a server nor a network.
+
+    Raises
+    ------
+    UsageError
+        When ``--steps`` is less than 1, or the file cannot be written.
+    """
     start = time.perf_counter()
     choice = arguments(flow)
     options = drawing(look, settings)

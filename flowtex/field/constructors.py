@@ -26,7 +26,13 @@ class FieldConstructors:
 
     @classmethod
     def of(cls, arrays: FieldArrays) -> Self:
-        """Return the field of the arrays of a source."""
+        """Return the field of the arrays of a source.
+
+        Raises
+        ------
+        NotImplementedError
+            In this class; :class:`flowtex.FlowField` has the method.
+        """
         raise NotImplementedError
 
     @classmethod

@@ -27,7 +27,26 @@ _DATE = re.compile(
 
 
 def as_seconds(times: Any, time_unit: str) -> tuple[ArrayLike | None, str, Any]:
-    """Return times, their unit, and the date at time 0: dates and spans become seconds."""
+    """Return times, their unit, and the date at time 0: dates and spans become seconds.
+
+    Parameters
+    ----------
+    times
+        Numbers, dates or spans of any type, (T,).
+    time_unit
+        Unit of the numbers; empty or ``"s"`` with dates.
+
+    Returns
+    -------
+    tuple
+        Times (T,), their unit, and the first date, ``None`` for numbers and spans.
+
+    Raises
+    ------
+    FieldError
+        When ``time_unit`` is given with dates in addition to them, or the spans are months or
+        years.
+    """
     start = None
     try:
         values = host_array("times", times)
@@ -104,7 +123,13 @@ def time_text(field: Any, time: float) -> str:
 
 
 def seconds_since(start: Any, date: Any) -> float:
-    """Return seconds since ``start`` from a number, a date, or its text."""
+    """Return seconds since ``start`` from a number, a date, or its text.
+
+    Raises
+    ------
+    FieldError
+        When a date is given and the field's times are numbers, or the calendar lacks the date.
+    """
     if is_number(date) and not isinstance(date, (np.datetime64, np.timedelta64)):
         return float(date)
     if start is None:
@@ -124,6 +149,13 @@ def span_since(start: Any, date: Any) -> tuple[float, float]:
     """Return the begin and end of a date, in seconds since ``start``, in its calendar.
 
     The text of a day, month or year spans all of it; other dates end when they begin.
+
+    Raises
+    ------
+    FieldError
+        When the text is not a date, such as ``"2001-02-03 12:00"``.
+    ValueError
+        When the calendar lacks the date, such as 30 February.
     """
     if isinstance(date, np.datetime64):
         date = str(date)
@@ -161,7 +193,22 @@ def span_since(start: Any, date: Any) -> tuple[float, float]:
 
 
 def time_within(start: Any, times: Any, date: Any) -> float:
-    """Return a time of a field from a number or date; raise a FieldError if it is outside."""
+    """Return a time of a field from a number or date.
+
+    Parameters
+    ----------
+    start
+        Date at time 0, or ``None`` for times that are numbers.
+    times
+        Times of the field, increasing, (T,).
+    date
+        A number, a date, or its text.
+
+    Raises
+    ------
+    FieldError
+        When the time is not from the first to the last one of the field, or cannot be read.
+    """
     time = seconds_since(start, date)
     if not float(times[0]) <= time <= float(times[-1]):
         raise FieldError(f"time is {date!r}; expected {expected_times(start, times)}")

@@ -34,7 +34,13 @@ def finest_of(field: Any) -> Finest | None:
 
 
 def check_derivable(field: Any, name: str) -> None:
-    """Raise a FieldError if a field lacks the nodes from which a scalar is derived."""
+    """Check that a field has the nodes from which a scalar is derived.
+
+    Raises
+    ------
+    FieldError
+        When only a coarser level of a large field is in memory.
+    """
     if finest_of(field) is None:
         return
     rows, columns = field.shape

@@ -59,7 +59,20 @@ class SurfacePoint:
 
 
 def surface_point(surface: Surface, index: ArrayLike) -> SurfacePoint:
-    """Return the point of a surface at (j, i) in cells; a closed axis takes any number."""
+    """Return the point of a surface at (j, i) in cells; a closed axis takes any number.
+
+    Parameters
+    ----------
+    surface
+        The surface.
+    index
+        Row and column with their fractions, (2,).
+
+    Raises
+    ------
+    FieldError
+        When the index is not two finite numbers, or lies outside of the drawn surface.
+    """
     expected = "two finite numbers (j, i), in cells"
     at = checked_array("index", index, expected=expected)
     if at.shape != (2,) or not np.isfinite(at).all():

@@ -176,7 +176,20 @@ class FieldOptions:
         }
 
     def refuse(self, names: Iterable[str], scope: str) -> None:
-        """Raise a FieldError if one of these arguments for another kind of data is given."""
+        """Refuse arguments for another kind of data.
+
+        Parameters
+        ----------
+        names
+            Names of the refused arguments.
+        scope
+            The data for which they are, and what this is instead.
+
+        Raises
+        ------
+        FieldError
+            When one of them is given.
+        """
         if names := [name for name in self.given if name in names]:
             raise FieldError(f"{', '.join(names)} applies to {scope}; omit it")
 

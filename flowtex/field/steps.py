@@ -56,7 +56,13 @@ class LazySteps:
         return (self.step(n) for n in range(self._count))
 
     def step(self, number: int) -> Floats:
-        """Return one step, (J, I, ...)."""
+        """Return one step, (J, I, ...).
+
+        Raises
+        ------
+        IndexError
+            When the step does not exist; negative numbers count from the end.
+        """
         if not -self._count <= number < self._count:
             raise IndexError(f"step {number} does not exist: expected 0 to {self._count - 1}")
         number %= self._count

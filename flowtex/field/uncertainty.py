@@ -35,6 +35,11 @@ def with_uncertainty(field: Field, value: Any) -> Field:
     ``value`` is the name of a scalar of the field, averaged to the nodes if it is on cells; or of
     the dimension over which a dataset was averaged; or an array, (J, I) or (T, J, I), on triangles
     (N,) or (T, N): the standard deviation of the velocity over its magnitude; or ``None``.
+
+    Raises
+    ------
+    FieldError
+        When the field has no such scalar, the array has another shape, or a value is negative.
     """
     if value is None:
         return field
@@ -65,7 +70,24 @@ def with_uncertainty(field: Field, value: Any) -> Field:
 
 
 def nodal_steps(field: Any, value: Any, name: str, other: str = "") -> Floats:
-    """Return an array of an argument as nodal values of a field, (T or 1, J, I)."""
+    """Return an array of an argument as nodal values of a field, (T or 1, J, I).
+
+    Parameters
+    ----------
+    field
+        The flow.
+    value
+        Numbers, (J, I), (T, J, I), or with the nodes in one axis, (N,) or (T, N).
+    name
+        Name of the argument, for the error.
+    other
+        What else the argument accepts, for the error; ends with ``"or "``.
+
+    Raises
+    ------
+    FieldError
+        When the value is not numeric, or has another shape.
+    """
     nodes = int(np.prod(field.shape))
     shapes: set[tuple[int, ...]] = {field.shape, (nodes,)}
     for count in (1, len(field.times)):

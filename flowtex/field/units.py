@@ -110,6 +110,11 @@ def velocity_units(length: str, time: str, velocity: str) -> tuple[float, str, s
 
     An unknown unit of time is the velocity's own one. Velocities without a unit, or along positions
     without one, are not converted, nor are other vectors such as stress.
+
+    Raises
+    ------
+    FieldError
+        When the unit of velocity cannot be converted to the unit of positions per time.
     """
     if not velocity or velocity == speed_unit(length, time):
         return 1.0, time, velocity

@@ -27,7 +27,14 @@ NO_DATA = "no data"  #: The scalar that is 1 where there are no data, 0 elsewher
 
 
 def node_positions(points: Any) -> Any:
-    """Return positions (J, I, 2 or 3) from a tuple of arrays, also (I,) and (J,); else as is."""
+    """Return positions (J, I, 2 or 3) from a tuple of arrays, also (I,) and (J,); else as is.
+
+    Raises
+    ------
+    FieldError
+        When coordinates of rows or columns both increase and decrease, or the arrays of a tuple
+        have different shapes.
+    """
     is_tuple = isinstance(points, (tuple, list)) and len(points) in (2, 3)
     if is_tuple:
         sizes = [np.ndim(part) for part in points]
@@ -55,7 +62,13 @@ def node_positions(points: Any) -> Any:
 
 
 def as_numbers(name: str, values: ArrayLike) -> tuple[Floats, Any]:
-    """Return values as float64, copied if necessary, and the nodes (J, I) that a mask hides."""
+    """Return values as float64, copied if necessary, and the nodes (J, I) that a mask hides.
+
+    Raises
+    ------
+    FieldError
+        When the values are not real numbers, such as complex ones or text.
+    """
     values = host_array(name, values)
     if np.ma.isMaskedArray(values):
         mask = np.ma.getmaskarray(values)

@@ -532,7 +532,23 @@ def _stored(view: WebView) -> StoredPyramid:
 
 
 def check_basemap(basemap: object, path: Path, views: Sequence[WebView]) -> None:
-    """Raise a FieldError when a map has no style, or cannot show the views of a page."""
+    """Check that a web map has a style, and can show the views of a page.
+
+    Parameters
+    ----------
+    basemap
+        Address of a MapLibre style, or the style as a dictionary.
+    path
+        File of the page.
+    views
+        The views of the page.
+
+    Raises
+    ------
+    FieldError
+        When the path is no HTML page, the style is neither an address nor a dictionary with layers,
+        the flow is not in Mercator's projection, or the page has two views.
+    """
     if path.suffix.lower() not in (".html", ".htm"):
         raise FieldError(
             f"basemap is given, and path is {path.name!r}; expected a page, such as 'map.html'"

@@ -123,6 +123,11 @@ def show_plotter(plotter: Any, *, screenshot: Any = None, **options: Any) -> Any
     is returned. A warning lists what the browser does not draw. PyVista may use a backend found
     this way as the default if no other is installed: then it does what PyVista does without it.
     PyVista also calls it in place of a missing backend; then the error names its package.
+
+    Raises
+    ------
+    ModuleNotFoundError
+        When the chosen ``jupyter_backend`` is another one whose package is missing.
     """
     named = _named_backend()
     if named is None:

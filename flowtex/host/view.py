@@ -318,7 +318,20 @@ class TileSource:
         return parts
 
     def tile(self, key: TileKey, steps: Sequence[int]) -> ClientData | None:
-        """Return a tile as it is sent, or ``None`` where nothing of it is drawn."""
+        """Return a tile as it is sent, or ``None`` where nothing of it is drawn.
+
+        Parameters
+        ----------
+        key
+            Level, row and column of the tile.
+        steps
+            Time steps whose textures are sent.
+
+        Raises
+        ------
+        LookupError
+            When the surface has no tiles, because it is sent as a whole.
+        """
         scene = self.scene
         pyramid = self.scene.pyramid
         if pyramid is None:

@@ -222,7 +222,13 @@ class FlowHandle(AppearanceAttributes):
             notify(f"{text}: {error}", UserWarning)
 
     def show_scene(self, scene: Scene, *, render: bool = True) -> None:
-        """Show another scene with the same settings; if tracing fails, nothing changes."""
+        """Show another scene with the same settings; if tracing fails, nothing changes.
+
+        Raises
+        ------
+        FieldError
+            When the scene cannot be traced; it is closed, and the present one stays.
+        """
         try:
             textures = scene.textures
         except BaseException:

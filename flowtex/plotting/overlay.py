@@ -87,7 +87,13 @@ class Overlay:
         self.show(scene)
 
     def show(self, scene: Scene) -> None:
-        """Follow the appearance, the settings and the time of a scene."""
+        """Follow the appearance, the settings and the time of a scene.
+
+        Raises
+        ------
+        NotImplementedError
+            In this class; each overlay has its own method.
+        """
         raise NotImplementedError
 
     def close(self) -> None:

@@ -379,7 +379,22 @@ _ABOUT: dict[str, Check] = {
 
 
 def check_about(about: Any, place: str) -> dict[str, Any]:
-    """Return the description of a pyramid; a PyramidError says that it is not as it was written."""
+    """Return the checked description of a pyramid.
+
+    Parameters
+    ----------
+    about
+        Content of its attributes, as read.
+    place
+        Address of the store, for errors.
+
+    Raises
+    ------
+    PyramidError
+        When the attributes are missing, or another version wrote them.
+    DamageError
+        When they are not as they were written.
+    """
     if isinstance(about, dict):
         version = about.get("format")
     else:

@@ -126,7 +126,13 @@ class Levels:
         return valid.astype(bool)
 
     def check_part(self, part: Part) -> None:
-        """Raise a DamageError where a part is incomplete, or differs from the written one."""
+        """Check that a part of a level is complete and as it was written.
+
+        Raises
+        ------
+        DamageError
+            When objects are missing, or differ from what was written.
+        """
         level, step, *at = part
         rows, columns = (np.arange(s.start, s.stop) for s in part.lines(self.shape(level)))
         scalars = [name for name, count in self.about["scalars"].items() if step < count]
@@ -152,10 +158,19 @@ class Levels:
             raise DamageError(f"velocity {words} of {self.place} differs from what was written")
 
     def check_document(self, node: Any) -> None:
-        """Raise a DamageError where the metadata of a group or array are missing or differ.
+        """Check that the metadata of a group or array are as they were written.
 
-        ``node`` is a group or an array of :func:`described`. flowtex reads no metadata but those of
-        the pyramid, and other programs need them all.
+        flowtex itself reads only the metadata of the pyramid, but other programs need them all.
+
+        Parameters
+        ----------
+        node
+            A group or an array of :func:`described`.
+
+        Raises
+        ------
+        DamageError
+            When the metadata are missing, cannot be read or differ.
         """
         zarr = import_extra("zarr", "store")
         name = f"{node.path}/{DOCUMENT}"

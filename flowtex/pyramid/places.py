@@ -78,7 +78,16 @@ class ReadFault(OSError):
 
 
 def place_text(place: str | Path) -> str:
-    """Return the URL of a store, or the whole path of a local one; secrets are refused."""
+    """Return the URL of a store, or the whole path of a local one.
+
+    Raises
+    ------
+    PyramidError
+        When the address is no URL, has an unknown scheme, or contains a user, a password or a
+        query.
+    FieldError
+        When a local path is invalid.
+    """
     if not isinstance(place, str):
         text = str(checked_path("store", place))
     else:
@@ -116,7 +125,22 @@ def is_remote(place: str | Path) -> bool:
 
 
 def objects_at(place: str | Path, *, patient: bool = False) -> ObjectStore:
-    """Return the store of obstore's at a place; a patient one repeats requests for minutes."""
+    """Return the obstore store at a place.
+
+    Parameters
+    ----------
+    place
+        Folder, or URL of object storage.
+    patient
+        Whether failed requests are repeated for minutes, as builds need.
+
+    Raises
+    ------
+    PyramidError
+        When the place is not the address of a store.
+    ModuleNotFoundError
+        When obstore is not installed.
+    """
     text = place_text(place)
     import_extra("obstore.store", "store")
     from obstore import store as objects
@@ -148,9 +172,23 @@ def objects_at(place: str | Path, *, patient: bool = False) -> ObjectStore:
 
 
 def store_at(place: str | Path, *, read_only: bool = True) -> Store:
-    """Return the store of Zarr's at a place, where files and objects are whole or absent.
+    """Return the Zarr store at a place, where files and objects are whole or absent.
 
     Its documents are checked as they are read, see :class:`CheckedStore`.
+
+    Parameters
+    ----------
+    place
+        Folder, or URL of object storage or of a web server.
+    read_only
+        Whether nothing is written.
+
+    Raises
+    ------
+    PyramidError
+        When the place is not the address of a store, or is on a web server and would be written.
+    ModuleNotFoundError
+        When Zarr is not installed.
     """
     text = place_text(place)
     import_extra("zarr.storage", "store")
@@ -228,7 +266,20 @@ def _remote_document(text: str) -> bytes:
 
 
 def check_room(place: str, names: Iterable[str]) -> None:
-    """Raise a PyramidError where a build would write among other data, whose names these are."""
+    """Check that a build would not write among other data.
+
+    Parameters
+    ----------
+    place
+        Folder or URL.
+    names
+        Names of the entries at the place.
+
+    Raises
+    ------
+    PyramidError
+        When the place is a file, or contains other data than a pyramid.
+    """
     if not is_remote(place) and Path(place).is_file():
         raise PyramidError(f"{place} is a file; expected a new or empty folder, or a store")
     others = sorted({*names} - {BUILDING})
@@ -277,7 +328,13 @@ def fault_words(error: Exception) -> str:
 
 @contextmanager
 def plain_faults() -> Iterator[None]:
-    """Raise errors of object storage in plain words; the originals may repeat credentials."""
+    """Replace errors of object storage, which may repeat credentials, by short ones.
+
+    Raises
+    ------
+    PyramidError
+        When the ``with`` block raises an error of obstore. Other errors stay as they are.
+    """
     try:
         yield
     except Exception as error:
@@ -288,7 +345,13 @@ def plain_faults() -> Iterator[None]:
 
 @contextmanager
 def building(place: str) -> Iterator[None]:
-    """Mark a store as being built; a PyramidError when another build that runs has marked it."""
+    """Mark a store as being built, during a ``with`` block.
+
+    Raises
+    ------
+    PyramidError
+        When another build that still runs, or one on another machine, has marked it.
+    """
     from zarr.core.buffer import default_buffer_prototype
 
     store = store_at(place, read_only=False)

@@ -187,7 +187,18 @@ class RegionSource:
         return self
 
     def ranges(self) -> dict[str, list[tuple[float, float] | None]]:
-        """Return ends of a sample of scalars and of the speed, whole and robust."""
+        """Return the ranges of the scalars and of the speed, from a sample of nodes and steps.
+
+        Returns
+        -------
+        dict
+            For each name the whole and the robust range, each from low to high.
+
+        Raises
+        ------
+        FieldError
+            When no sampled node has data.
+        """
         every = math.ceil(math.sqrt(math.prod(self.shape) / MOST_SAMPLES))
         rows = np.arange(0, self.shape[0], every)
         columns = np.arange(0, self.shape[1], every)
@@ -291,7 +302,24 @@ def has_parts(place: object) -> bool:
 
 
 def datasets_at(place: str, options: FieldOptions) -> list[Any]:
-    """Return the datasets of a store of others that have a velocity, the finest first."""
+    """Return the datasets with a velocity in a Zarr store of another program, the finest first.
+
+    Parameters
+    ----------
+    place
+        Folder or URL of the store.
+    options
+        Options of the field; ``vectors`` names the components.
+
+    Raises
+    ------
+    PyramidError
+        When xarray cannot open the store, or no group has a velocity.
+    FieldError
+        When an array is damaged or does not fit into memory.
+    ModuleNotFoundError
+        When xarray or Zarr is not installed.
+    """
     xarray = import_extra("xarray", "xarray")
     import_extra("zarr", "xarray")
     from flowtex.pyramid.objects import Objects

@@ -86,7 +86,24 @@ def make_finest(source: NodeSource, place: str, run: str, part: Part) -> None:
 
 
 def compare_finest(source: NodeSource, place: str, run: str, part: Part) -> None:
-    """Raise a ChangedError where the source has other values than a part was made of."""
+    """Check that a source still has the values of which a part of a pyramid was made.
+
+    Parameters
+    ----------
+    source
+        The field that is built.
+    place
+        Address of the store.
+    run
+        Identity of the build.
+    part
+        The part, on the finest level.
+
+    Raises
+    ------
+    ChangedError
+        When values differ.
+    """
     levels = _levels(place, run)
     nodes = _as_written(_source_nodes(levels, source, part))
     if (

@@ -26,7 +26,13 @@ _INCLUDE = re.compile(r"^[ \t]*//#include[ \t]+(\S+)[ \t]*$", re.MULTILINE)
 
 
 def shader_folder(package: Path = _PACKAGE) -> Path:
-    """Return the folder that holds the shaders of a package, or raise a FileNotFoundError."""
+    """Return the folder with the shaders: in an installed package, or in a checkout beside it.
+
+    Raises
+    ------
+    FileNotFoundError
+        When neither folder exists.
+    """
     installed = package / "_shaders"
     if installed.is_dir():
         return installed
@@ -49,7 +55,13 @@ def shader_names() -> tuple[str, ...]:
 
 
 def shader_source(name: str) -> str:
-    """Return the text of one shader, or raise a FileNotFoundError."""
+    """Return the text of one shader, by its path in the folder of shaders.
+
+    Raises
+    ------
+    FileNotFoundError
+        When no shader has this name, or the name leads out of the folder.
+    """
     path = shader_folder() / name
     # Listing all names takes longer than reading one, and is left to the error.
     inside = not any(part.startswith((".", "/")) for part in PurePosixPath(name).parts)

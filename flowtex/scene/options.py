@@ -362,6 +362,18 @@ class Options:
 
         An image keeps its own colours unless ``strength`` is given, and where winds and currents of
         the Earth are calm the texture fades unless ``fade`` is.
+
+        Parameters
+        ----------
+        field
+            The flow, for defaults that depend on it.
+        defaults
+            Settings where none are given.
+
+        Raises
+        ------
+        SettingsError
+            When both an image and another kind of ``noise`` are given, or a setting is invalid.
         """
         values = {**defaults, **self.settings}
         if field is not None and field.projection is not None:

@@ -154,6 +154,13 @@ class Scene:
 
     @appearance.setter
     def appearance(self, value: Appearance) -> None:
+        """Draw by another appearance; after an error the present one stays.
+
+        Raises
+        ------
+        FieldError
+            When the scalar does not exist, or colours or the image cannot be used.
+        """
         before = self.field
         if value.scalar_name not in (SPEED, *before.scalars):
             self.field = with_scalars(self._given, value.scalar_name)

@@ -69,7 +69,13 @@ class Record:
 
     @contextmanager
     def explain(self) -> Iterator[None]:
-        """Add what was done so far as a note to an error in the block."""
+        """Add what was done so far as a note to an error of the ``with`` block.
+
+        Raises
+        ------
+        FieldError
+            When the block raises one.
+        """
         try:
             yield
         except FieldError as error:

@@ -144,11 +144,22 @@ class FlowSource:
         The plane is such as ``"k=20"``, ``"x=0.25"`` or ``"outer=0"``, by default
         :attr:`default_plane`, and the block as for :meth:`part`. Options are further arguments of
         the function that makes the field, such as :meth:`FlowField.from_pyvista`.
+
+        Raises
+        ------
+        NotImplementedError
+            In this class; each kind of source has its own method.
         """
         raise NotImplementedError
 
     def part(self, block: str | None = None) -> FlowSource:
-        """Return the source of one of the :attr:`blocks`, named or numbered, or this one itself."""
+        """Return the source of one of the :attr:`blocks`, named or numbered, or this one itself.
+
+        Raises
+        ------
+        NotImplementedError
+            In this class; each kind of source has its own method.
+        """
         raise NotImplementedError
 
 
@@ -185,7 +196,13 @@ class MeshSource(FlowSource):
 
     @classmethod
     def from_file(cls, path: str | Path) -> MeshSource:
-        """Open a file, as for :meth:`FlowField.from_file`; errors start with the path."""
+        """Open a file, as for :meth:`FlowField.from_file`.
+
+        Raises
+        ------
+        FieldError
+            When the file cannot be read; the error starts with the path.
+        """
         with errors_of_file(path):
             file = open_file(path)
             if file.problem:
@@ -214,7 +231,13 @@ class MeshSource(FlowSource):
             return FlowField.from_pyvista(self._mesh, vectors=chosen, name=self.name, **options)
 
     def part(self, block: str | None = None) -> MeshSource:
-        """Return the source of one of the blocks, as :meth:`FlowSource.part` does."""
+        """Return the source of one of the blocks, as :meth:`FlowSource.part` does.
+
+        Raises
+        ------
+        FieldError
+            When the block does not exist.
+        """
         if not self.blocks:
             return self
         if block is not None and block not in self.blocks and block.isdecimal():
@@ -343,7 +366,13 @@ class DatasetSource(FlowSource):
         self._datasets.close()
 
     def part(self, block: str | None = None) -> FlowSource:
-        """Return this source, which draws on any of the maps."""
+        """Return this source, which draws on any of the maps.
+
+        Raises
+        ------
+        FieldError
+            When the map does not exist.
+        """
         if block is not None and block not in self.blocks:
             raise FieldError(f"block is {block!r}; expected one of {', '.join(self.blocks)}")
         return self

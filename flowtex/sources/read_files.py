@@ -150,7 +150,15 @@ class OpenFile:
 
 
 def open_file(path: str | Path) -> OpenFile:
-    """Open a file; callers name errors by :func:`errors_of`."""
+    """Open a file of a mesh; callers name errors by :func:`errors_of`.
+
+    Raises
+    ------
+    FieldError
+        When the file is missing or damaged, or its format is unknown.
+    ModuleNotFoundError
+        When PyVista or the reader of the format is not installed.
+    """
     file = one_path(path)
     if problem := _path_problem(file):
         raise FieldError(problem)
@@ -237,7 +245,25 @@ def read_files(
     time: float | str | None = None,
     regions: bool = False,
 ) -> GridArrays | TriangleArrays | Regions:
-    """Read the arrays of a field; callers name errors by :func:`errors_of`."""
+    """Read the arrays of a field; callers name errors by :func:`errors_of`.
+
+    Parameters
+    ----------
+    path
+        A file, or several files of one dataset.
+    options
+        Options of the field.
+    time
+        One of the times; all by default.
+    regions
+        Whether no nodes are read if any part can be read by itself.
+
+    Raises
+    ------
+    FieldError
+        When a file is missing, cannot be read or has no such time, or the options do not fit its
+        kind.
+    """
     if paths := dataset_paths(path):
         if time is not None:
             options = replace(options, sel={**(options.sel or {}), "time": time})
@@ -262,7 +288,13 @@ def read_files(
 
 
 def one_path(path: str | Path | Sequence[str | Path]) -> Path:
-    """Return the path of a mesh; raises a FieldError for several."""
+    """Return the path of a mesh, with ``~`` expanded.
+
+    Raises
+    ------
+    FieldError
+        When several paths are given; several files are read only as datasets.
+    """
     if isinstance(path, (str, Path)):
         return Path(path).expanduser()
     missing = [str(each) for each in path if not Path(each).expanduser().exists()]

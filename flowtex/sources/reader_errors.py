@@ -39,7 +39,13 @@ SMALL = 100_000
 
 @contextmanager
 def errors_of_file(path: str | Path) -> Iterator[None]:
-    """Name the file in errors of readers and in VTK's log, one thread at a time."""
+    """Name the file in errors of readers and in VTK's log, one thread at a time.
+
+    Raises
+    ------
+    FieldError
+        When the ``with`` block raises an error of a reader, or VTK reports one.
+    """
     file = Path(path).expanduser()
     cause: Exception | None = None
     has_vtk = find_spec("pyvista") is not None  # other readers do not need it
@@ -136,7 +142,24 @@ def _first_line(alert: str) -> str:
 
 
 def check_count(found: int, declared: int, what: str, unit: str = "bytes") -> None:
-    """Raise a FieldError if a file has less than it declares."""
+    """Check that a file has at least what it declares.
+
+    Parameters
+    ----------
+    found
+        Number that the file has.
+    declared
+        Number that it declares.
+    what
+        The part of the file that declares it.
+    unit
+        What is counted.
+
+    Raises
+    ------
+    FieldError
+        When it has less.
+    """
     if found < declared:
         raise FieldError(
             f"the file is truncated or damaged: {what} declares {declared:,} {unit}, but the "
@@ -145,7 +168,20 @@ def check_count(found: int, declared: int, what: str, unit: str = "bytes") -> No
 
 
 def check_memory(nbytes: int, what: str) -> None:
-    """Raise a FieldError if data take more than a share of the available memory."""
+    """Check that data fit into memory.
+
+    Parameters
+    ----------
+    nbytes
+        Their size in bytes.
+    what
+        What declares the size, for the error.
+
+    Raises
+    ------
+    FieldError
+        When they need more than a share of the available memory.
+    """
     if nbytes < SMALL:
         return
     budget = int(available_bytes() * MEMORY_SHARE)

@@ -326,7 +326,13 @@ class _RemoteSteps:
 
 
 def open_remote(paths: Sequence[Path]) -> RemoteSource:
-    """Open a file, or several of data of the Earth, in another process."""
+    """Open a file, or several of one dataset, in another process.
+
+    Raises
+    ------
+    FieldError
+        When the file cannot be read, or changes again and again while it is read.
+    """
     for _ in range(MOST_READINGS):
         file = _OpenFile([path.expanduser().absolute() for path in paths])
         source = RemoteSource(file, file.ask("open", paths=[str(path) for path in file.paths])[0])

@@ -198,7 +198,13 @@ class DrawnSurface:
 
     @property
     def drawn(self) -> tuple[slice, slice | Indices]:
-        """Index of the nodes that are drawn in arrays over those of the field, (J, I)."""
+        """Index of the nodes that are drawn in arrays over those of the field, (J, I).
+
+        Raises
+        ------
+        NotImplementedError
+            In this class; grids and triangles have the property.
+        """
         raise NotImplementedError
 
     @property
@@ -207,12 +213,31 @@ class DrawnSurface:
         return self.field.surface.points[self.drawn]
 
     def at_vertices(self, nodal: AnyArray, *, on_cells: bool = False) -> AnyArray:
-        """Return values at the vertices of a mesh, (V, ...), from drawn ones, (J, I, ...)."""
+        """Return values at the vertices of a mesh, (V, ...), from drawn ones, (J, I, ...).
+
+        Parameters
+        ----------
+        nodal
+            Values at drawn nodes, (J, I, ...), or on cells.
+        on_cells
+            Whether the values belong to cells.
+
+        Raises
+        ------
+        NotImplementedError
+            In this class; grids and triangles have the method.
+        """
         raise NotImplementedError
 
     @property
     def faces(self) -> Indices:
-        """Vertices around each cell that is drawn, (M, 3 or 4)."""
+        """Vertices around each cell that is drawn, (M, 3 or 4).
+
+        Raises
+        ------
+        NotImplementedError
+            In this class; grids and triangles have the property.
+        """
         raise NotImplementedError
 
     @property

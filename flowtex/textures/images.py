@@ -126,7 +126,13 @@ def averaged(pixels: Bytes, times: int) -> Bytes:
 
 
 def load_image(image: Any) -> Any:
-    """Read an image (H, W, 1 to 4) when it is a path, row 0 at the top; anything else stays."""
+    """Read an image (H, W, 1 to 4) when it is a path, row 0 at the top; anything else stays.
+
+    Raises
+    ------
+    ImageError
+        When the path is no file or no readable image, or the image has too many pixels.
+    """
     if not isinstance(image, (str, Path)):
         return image
     path = Path(image).expanduser()

@@ -70,7 +70,22 @@ class TextureSet:
 
     @classmethod
     def build(cls, store: SliceStore, image: Floats32 | None = None) -> TextureSet:
-        """Make the textures, maybe with an image; a FieldError where slices do not fit."""
+        """Make the textures of a flow from its traced slices.
+
+        Parameters
+        ----------
+        store
+            The slices.
+        image
+            Image that is drawn along the flow, in place of noise.
+
+        Raises
+        ------
+        FieldError
+            When the slices belong to another number of nodes, or have too few or too many lags.
+        SettingsError
+            When an image is given for a surface of triangles.
+        """
         field = store.field
         if store.unit.shape != field.shape:
             raise FieldError(
@@ -331,7 +346,13 @@ _critical_cells: WeakKeyDictionary[FlowField, float] = WeakKeyDictionary()
 
 
 def check_noise(field: FlowField, noise: str) -> None:
-    """Raise a SettingsError where a field cannot be drawn with a kind of noise."""
+    """Check that a field can be drawn with a kind of noise.
+
+    Raises
+    ------
+    SettingsError
+        When the surface consists of triangles and the noise is not ``"procedural"``.
+    """
     if noise != "procedural" and field.triangles is not None:
         raise SettingsError(
             f"noise is {noise!r}, which needs rows and columns, but this surface consists of "

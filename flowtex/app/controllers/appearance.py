@@ -131,7 +131,13 @@ class Appearance(Controller):
         self.area.changed()
 
     def take_comparison(self) -> None:
-        """Show or remove the second pane, as the page requests."""
+        """Show or remove the second pane, as the page requests.
+
+        Raises
+        ------
+        Exception
+            When the second pane cannot be drawn; the page then shows the choice before.
+        """
         choice = self.state.get("compare")
         if not name_among(choice, self._comparisons()):
             self.state.set(compare=self.compared)

@@ -74,7 +74,19 @@ def _defaults_of(state: State) -> dict[str, Any]:
 def to_link(state: State, first: State | None = None) -> str:
     """Return a state as the query of a link, such as ``plane=k=20&lod=off``.
 
-    It leaves out defaults, unless a new page shows another value ``first``.
+    It leaves out defaults, unless a new page shows another value.
+
+    Parameters
+    ----------
+    state
+        The state of a page.
+    first
+        The state with which a new page begins; the defaults if it is omitted.
+
+    Raises
+    ------
+    SettingsError
+        When the state has a setting that :data:`flowtex.settings.TABLE` lacks.
     """
     first = first or {}
     defaults = _defaults_of(state)

@@ -113,7 +113,13 @@ class Routes:
         self._takers.clear()
 
     async def receive(self, name: str, request: web.Request) -> web.StreamResponse:
-        """Receive a file; raises ``HTTPNotFound`` if the name receives none."""
+        """Receive an uploaded file, and return the response to the browser.
+
+        Raises
+        ------
+        HTTPNotFound
+            When uploads are not accepted under the name.
+        """
         if (taker := self._takers.get(name)) is None:
             raise web.HTTPNotFound
         try:
@@ -124,7 +130,13 @@ class Routes:
         return web.Response(text="")
 
     async def answer(self, name: str) -> web.StreamResponse:
-        """Return a file; raises ``HTTPNotFound`` if it does not exist."""
+        """Return the response with a file, or with content that is made for the request.
+
+        Raises
+        ------
+        HTTPNotFound
+            When nothing exists under the name.
+        """
         stem, _, rest = name.partition(".")
         try:
             content = self._content[stem](rest)
@@ -148,7 +160,15 @@ class Routes:
 
 
 def add_route(application: web.Application, find: Callable[[str], Respond | None]) -> None:
-    """Serve files below ``/flowtex``; ``find`` returns what answers below a token."""
+    """Serve files below ``/flowtex``; ``find`` returns what answers below a token.
+
+    Raises
+    ------
+    HTTPNotFound
+        By the handler of a request, when ``find`` returns ``None`` for its token.
+    HTTPUnsupportedMediaType
+        By the handler, when an upload is compressed.
+    """
 
     async def respond(request: web.Request) -> web.StreamResponse:
         answer = find(request.match_info["token"])
@@ -225,7 +245,21 @@ class Uploads:
         self.address = routes.take("upload", self.receive)
 
     async def receive(self, name: str, content: AsyncIterable[bytes]) -> None:
-        """Write a file, and report it; a FieldError if it is not accepted."""
+        """Write an uploaded file to the folder of the page, and report its path.
+
+        Parameters
+        ----------
+        name
+            Name that the browser gives; only its last part is used.
+        content
+            The file in pieces.
+
+        Raises
+        ------
+        FieldError
+            When the suffix is not one of a readable file, the page has too many uploads, the file
+            is too large, or the disk refuses it.
+        """
         name = plain_name(name.replace("\\", "/").rsplit("/", 1)[-1])
         if Path(name).suffix.lower() not in UPLOAD_SUFFIXES:
             endings = ", ".join(UPLOAD_SUFFIXES)

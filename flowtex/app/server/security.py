@@ -83,7 +83,28 @@ def known_hosts(host: str, allowed: Iterable[str] = ()) -> frozenset[str]:
 
 
 def guard(application: web.Application, *, hosts: Container[str] = LOCAL) -> None:
-    """Limit times, refuse other sites and unknown ``hosts``, and write errors only to the log."""
+    """Limit times, refuse other sites and unknown hosts, and write errors only to the log.
+
+    Parameters
+    ----------
+    application
+        The application, to which handlers around each request are added.
+    hosts
+        Names of hosts under which browsers may ask for pages.
+
+    Raises
+    ------
+    HTTPForbidden
+        By a handler, when a request has another host name or comes from another site.
+    HTTPBadRequest
+        By a handler, when the body of a request cannot be read.
+    HTTPNotFound
+        By a handler, when the name of a file is too long.
+    HTTPRequestTimeout
+        By a handler, when the answer takes longer than ``ANSWER_S``.
+    HTTPInternalServerError
+        By a handler, in place of any other error, whose text is only logged.
+    """
 
     @web.middleware
     async def own_pages_only(request: web.Request, handler: Handler) -> web.StreamResponse:

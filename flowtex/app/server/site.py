@@ -228,9 +228,27 @@ async def serve_until_ended(
     announce: Callable[[str], None],
     open_browser: bool,
 ) -> None:
-    """Serve until the task is cancelled, or a signal raises :class:`Ended`.
+    """Serve until the task is cancelled, or a signal ends the process.
 
-    ``listen`` returns the port; ``endpoint`` is host, port and the rest of the address.
+    Parameters
+    ----------
+    listen
+        Starts the server, and returns its port.
+    stop
+        Stops the server.
+    endpoint
+        Host, port and the rest of the address of the page.
+    announce
+        Called with the address when the server listens.
+    open_browser
+        Whether the page is opened in the browser of this machine.
+
+    Raises
+    ------
+    ServeError
+        When the port cannot be used, as when another program listens there.
+    Ended
+        When a signal ended the server, after it has stopped.
     """
     host, port, rest = endpoint
     main = asyncio.current_task()

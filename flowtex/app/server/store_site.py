@@ -68,7 +68,15 @@ class ServedStore:
         return not Path(os.path.realpath(path)).is_relative_to(self._folder or "")
 
     async def get(self, name: str) -> bytes:
-        """Return an object; a LookupError if it does not exist, a ReadFault when reading fails."""
+        """Return an object of the store.
+
+        Raises
+        ------
+        LookupError
+            When the store has no object of this name.
+        ReadFault
+            When reading fails, as without a connection; the text has no secrets.
+        """
         array, _, rest = name.partition("/c/")
         words = rest.split("/")
         counts = self._counts.get(array, ())
@@ -94,7 +102,28 @@ class ServedStore:
 def store_application(
     served: ServedStore, page: str, token: str, hosts: Container[str] = LOCAL
 ) -> web.Application:
-    """Return a web application of a page and its store, below a token."""
+    """Return a web application of a page and its store, below a token.
+
+    Parameters
+    ----------
+    served
+        The store.
+    page
+        HTML of the page.
+    token
+        First part of each path, without which nothing is sent.
+    hosts
+        Names of hosts under which browsers may ask for the page.
+
+    Raises
+    ------
+    HTTPForbidden
+        By a handler, when the path has another token.
+    HTTPNotFound
+        By a handler, when the store lacks the requested object.
+    HTTPFound
+        By a handler, which sends the browser to the address with a slash at its end.
+    """
     application = web.Application(client_max_size=0)
     guard(application, hosts=hosts)
 

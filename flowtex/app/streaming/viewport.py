@@ -163,12 +163,26 @@ class Viewport:
         keep_clim: bool = False,
         keep_time: bool = False,
     ) -> None:
-        """Show another flow with the same settings, and with the same camera for ``keep_view``.
+        """Show another flow with the same settings.
 
-        With ``keep_range``, for another part of the same data, the range of colours stays. One that
-        was not chosen is that of the volume where the flow knows it, or else the present one. With
-        ``keep_clim`` only a chosen range stays. With ``keep_time`` the time stays as far as the
-        flow has it.
+        Parameters
+        ----------
+        field
+            The flow.
+        keep_view
+            Whether the camera stays, if the surfaces are oriented alike.
+        keep_range
+            Whether the colour range stays, as for another part of the same data. A range that was
+            not chosen becomes the range of the volume where the flow knows it.
+        keep_clim
+            Whether a chosen colour range stays, and only such a range.
+        keep_time
+            Whether the time stays, as far as the flow has it.
+
+        Raises
+        ------
+        FieldError
+            When the flow cannot be drawn; the panes then show the flow before.
         """
         camera = self.camera
         surface = self.scene.whole.surface

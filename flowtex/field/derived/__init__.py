@@ -57,7 +57,20 @@ _WORDS = re.compile(r"[A-Z]?[a-z]+\d*|[A-Z]+(?![a-z])\d*|\d+")
 
 
 def derived_steps(name: str, field: Any) -> Steps:
-    """Return one of :data:`DERIVED`, (T, J, I); NaN where too few neighbours have data."""
+    """Return one of :data:`DERIVED`, (T, J, I); NaN where too few neighbours have data.
+
+    Parameters
+    ----------
+    name
+        Name of the quantity, such as ``"vorticity"``.
+    field
+        The flow.
+
+    Raises
+    ------
+    FieldError
+        When the name is not in :data:`DERIVED`.
+    """
     if name not in DERIVED:
         raise FieldError(
             f"{name!r} cannot be derived; expected one of {', '.join((*DERIVED, *FOLLOWED))}"
@@ -87,7 +100,14 @@ def _of_known(name: str, field: Any, number: int) -> Floats:
 
 
 def steps_of(field: Any, name: str) -> Steps:
-    """Return nodal values of a field at all times, (T or 1, J, I), by the name of a scalar."""
+    """Return nodal values of a field at all times, (T or 1, J, I), by the name of a scalar.
+
+    Raises
+    ------
+    FieldError
+        When the field has no scalar of this name, and it cannot be derived from the velocity in
+        memory.
+    """
     if name in field.scalars:
         return field.scalars[name]
     if name == "speed":
@@ -112,7 +132,22 @@ def steps_of(field: Any, name: str) -> Steps:
 
 
 def followed_steps(name: str, field: Any, horizon: float | None) -> Steps:
-    """Return one of :data:`FOLLOWED` at each node and step of a field, (T, J, I)."""
+    """Return one of :data:`FOLLOWED` at each node and step of a field, (T, J, I).
+
+    Parameters
+    ----------
+    name
+        Name of the quantity, such as ``"ftle"``.
+    field
+        The flow.
+    horizon
+        Time for which particles are followed, in units of the field; negative backward.
+
+    Raises
+    ------
+    FieldError
+        When the name is not in :data:`FOLLOWED`, or the horizon is missing, zero or not finite.
+    """
     if name not in FOLLOWED:
         raise FieldError(
             f"horizon={horizon} is given for {name!r}; only {', '.join(FOLLOWED)} uses it"

@@ -85,7 +85,13 @@ class Parameter:
 
     @classmethod
     def of(cls, name: str, raw: Any) -> Parameter:
-        """Return the parameter of a value, or of value, low and high."""
+        """Return the parameter of a value, or of value, low and high.
+
+        Raises
+        ------
+        FieldError
+            When the value is no number, not between low and high, or these are not in order.
+        """
         try:
             value, *ends = map(float, (raw,) if is_number(raw) else raw)
             low, high = ends or (sorted((0.0, 2 * value)) if value else (-1.0, 1.0))
@@ -109,7 +115,13 @@ class Expression:
 
     @classmethod
     def of(cls, source: Any, names: tuple[str, ...]) -> Expression:
-        """Read a text, a number, an expression of sympy's or a function of some of the names."""
+        """Read a text, a number, a SymPy expression or a function of some of the names.
+
+        Raises
+        ------
+        FieldError
+            When it is none of these, has another name, or is not an expression.
+        """
         if isinstance(source, str) or is_number(source) or hasattr(source, "free_symbols"):
             tree = parse(str(source), names)
         elif callable(source):
@@ -171,7 +183,27 @@ class Formula:
         *,
         timed: bool,
     ) -> Formula:
-        """Read the arguments of :func:`flowtex.formula`; raise a FieldError if they are invalid."""
+        """Read the arguments of :func:`flowtex.formula`.
+
+        Parameters
+        ----------
+        expressions
+            Components of the velocity: two, or three along x, y and z.
+        surface
+            Name of a surface, or its three expressions; ``None`` for the plane.
+        ranges
+            Ends of each coordinate, by its name; ``None`` for the default.
+        parameters
+            Value, or value, low and high, by the name of the parameter.
+        timed
+            Whether expressions may contain the time ``t``.
+
+        Raises
+        ------
+        FieldError
+            When the number of expressions does not fit the surface, a range belongs to no
+            coordinate, a parameter has the name of a coordinate, or an expression cannot be read.
+        """
         places, defaults = _surface(surface)
         if len(expressions) not in ((2, 3) if places else (2,)):
             if places:

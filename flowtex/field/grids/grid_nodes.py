@@ -196,7 +196,16 @@ def grid_nodes(
     sign_free: bool,
     on_globe: bool,
 ) -> tuple[GridSurface, dict[str, Any]]:
-    """Check arrays; return the surface and the arguments of a field. Only one late step is read."""
+    """Check arrays; return the surface and the arguments of a field. Only one late step is read.
+
+    The arguments are described at :meth:`flowtex.FlowField.from_arrays`.
+
+    Raises
+    ------
+    FieldError
+        When shapes or types do not fit together, values exceed the range of computations, or fewer
+        nodes than a surface needs have data. The error lists all faults.
+    """
     if not isinstance(scalars, Mapping):
         raise FieldError(
             f"scalars is a {type(scalars).__name__}; expected a mapping of arrays by name"

@@ -49,7 +49,13 @@ def triangle_nodes(
     """Check arrays; return the surface and the arguments of a field whose nodes are a row, (1, N).
 
     Nodes at one place are joined, but at sharp edges each face has its own; parts that cannot be
-    drawn are left out.
+    drawn are left out. The arguments are described at :meth:`flowtex.FlowField.from_triangles`.
+
+    Raises
+    ------
+    FieldError
+        When shapes or types do not fit together, values exceed the range of computations, or no
+        triangle has three nodes with data. The error lists all faults of the arrays.
     """
     p, masked_points = as_numbers("points", points)
     v, masked = as_numbers("velocity", first_step(velocity))

@@ -299,7 +299,20 @@ class AxesScales:
         return np.asarray(self._placed.inverted().transform(pixels) * (1.0, self.stretch))
 
     def extent(self, field: FlowField, frame: Floats) -> Floats:
-        """Return the ends of the coordinates that the scales can show, (2, 2): lower, upper."""
+        """Return the ends of the coordinates that the scales can show, (2, 2): lower, upper.
+
+        Parameters
+        ----------
+        field
+            The flow.
+        frame
+            Directions of x and y, (2, 3).
+
+        Raises
+        ------
+        FieldError
+            When the axes can show no node, as with negative values on a logarithmic scale.
+        """
         values = (field.points @ frame.T).reshape(-1, 2)
         with np.errstate(all="ignore"):
             is_shown = np.isfinite(self._within(self._scale.transform(values))).all(axis=-1)
@@ -331,6 +344,11 @@ class AxesScales:
         """Return a flat field as the axes show it; nodes outside of the scales are blanked.
 
         ``frame`` are the directions of x and y, (2, 3). The speed stays that of the field.
+
+        Raises
+        ------
+        FieldError
+            When the axes can show no node with data.
         """
         points = field.points @ frame.T
         low, high = self.extent(field, frame)

@@ -355,7 +355,20 @@ class FlowImage(AxesImage):
         return colours
 
     def set_norm(self, norm: Any) -> None:
-        """Draw the scalars by another norm; limits that it lacks are those of the scalars."""
+        """Draw the scalars by another norm; limits that it lacks become the ends of the scalars.
+
+        Parameters
+        ----------
+        norm
+            A matplotlib norm, or its name, such as ``"log"``.
+
+        Raises
+        ------
+        FieldError
+            When flowtex cannot draw colours by this norm; the norm before stays.
+        ValueError
+            When matplotlib rejects the norm or its limits; the norm before stays.
+        """
         before = self.norm
         super().set_norm(norm)
         try:

@@ -28,7 +28,13 @@ _inherited: list[vtkOpenGLRenderWindow] = []
 
 
 def check_fork() -> None:
-    """Raise an OpenGLMissingError in a process that cannot draw since it was forked."""
+    """Check that VTK can draw in this process.
+
+    Raises
+    ------
+    OpenGLMissingError
+        When the process was forked while a window was open or another thread drew.
+    """
     if _inherited:
         raise OpenGLMissingError(
             "VTK cannot draw here: this process was forked while a window was on the screen or "

@@ -30,7 +30,14 @@ if TYPE_CHECKING:
 def align(
     u: xr.DataArray, v: xr.DataArray, choice: Choice, record: Record
 ) -> tuple[xr.DataArray, xr.DataArray]:
-    """Return two components on the labels that both have, with the axes of the first."""
+    """Return two components on the labels that both have, with the axes of the first.
+
+    Raises
+    ------
+    FieldError
+        When one component has further axes or other scalar labels than the other, or the two have
+        no labels in common along an axis.
+    """
     axes = [further_axes(array) for array in (u, v)]
     for kind in [k for k in (*axes[0], *axes[1]) if (k in axes[0]) != (k in axes[1])]:
         n = 0 if kind in axes[0] else 1
@@ -80,7 +87,28 @@ def align(
 def common(
     u: xr.DataArray, v: xr.DataArray, dim: str, one: AnyArray, other: AnyArray, record: Record
 ) -> labels.Match:
-    """Return the labels that two variables have in common, and record those that are left out."""
+    """Return the labels that two variables have in common, and record the others.
+
+    Parameters
+    ----------
+    u
+        A variable.
+    v
+        Another variable.
+    dim
+        The dimension that both have.
+    one
+        Labels of the first variable along it.
+    other
+        Labels of the second variable along it.
+    record
+        Record of what was done.
+
+    Raises
+    ------
+    FieldError
+        When they have no label in common.
+    """
     found = labels.match(one, other)
     if not len(found.one):
         raise FieldError(

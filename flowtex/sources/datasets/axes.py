@@ -59,7 +59,20 @@ class Choice:
         return cls({**(options.sel or {}), **level}, dict(options.isel or {}))
 
     def check(self, names: set[str], drawn: set[str]) -> None:
-        """Raise for a name that no axis has, or one of those that are drawn."""
+        """Check that each selected axis exists, and is not drawn.
+
+        Parameters
+        ----------
+        names
+            Names and kinds of the axes along which data can be selected.
+        drawn
+            Names of the axes of the surface.
+
+        Raises
+        ------
+        FieldError
+            When a name of ``sel`` or ``isel`` is no axis, or an axis of the surface.
+        """
         for name in {*self.sel, *self.isel} - self.used:
             if name not in drawn:
                 text = near_names(name, sorted(names))
@@ -103,7 +116,13 @@ class Drawn:
         }
 
     def of(self, array: xr.DataArray) -> xr.DataArray:
-        """Return the same of another variable, ([time,] ...), or raise if its labels differ."""
+        """Return the same selection of another variable, ([time,] ...).
+
+        Raises
+        ------
+        FieldError
+            When the variable has an axis that the velocity lacks, or other labels along one.
+        """
         known = {axis.kind: axis for axis in self.axes}
         surface = horizontal_dims(array)
         series: tuple[str, ...] = ()
@@ -204,7 +223,13 @@ def axis_kind(array: xr.DataArray, dim: str) -> str:
 
 
 def further_axes(array: xr.DataArray) -> dict[str, str]:
-    """Return the dimensions beside those of the surface, by their kinds."""
+    """Return the dimensions of a variable that are not of its surface, by their kinds.
+
+    Raises
+    ------
+    FieldError
+        When two of them are of one kind, such as two axes of levels.
+    """
     surface = horizontal_dims(array)
     dims = [str(d) for d in array.dims if d not in surface]
     times = [d for d in dims if axis_kind(array, d) == TIME]
@@ -219,7 +244,13 @@ def further_axes(array: xr.DataArray) -> dict[str, str]:
 
 
 def choose(array: xr.DataArray, choice: Choice, record: Record) -> Drawn:
-    """Choose along the axes of the first component, which the second one has as well."""
+    """Choose along the axes of the first component, which the second one has as well.
+
+    Raises
+    ------
+    FieldError
+        When an axis is empty, a selected label does not exist, or a selection names no axis.
+    """
     if empty := [str(d) for d, count in array.sizes.items() if count == 0]:
         raise FieldError(
             f"{array.name} has no values along {', '.join(empty)}; expected at least one. If "

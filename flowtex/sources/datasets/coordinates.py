@@ -117,13 +117,26 @@ class Beside(NamedTuple):
 def find_places(
     array: xr.DataArray, dims: tuple[str, ...], beside: Beside, *, any_axes: bool = True
 ) -> Places:
-    """Return the places of values, by their coordinates, or by those of other datasets.
+    """Return the positions of values, from their own coordinates or from other datasets.
 
-    With ``any_axes`` the coordinates of the axes serve where these are neither longitude and
-    latitude nor x and y.
+    Coordinates with further axes, such as the time of a nest that moves, are selected along these
+    axes as the drawn variable is.
 
-    Coordinates with further axes, such as the time of a nest that moves, are those of what is drawn
-    along these axes.
+    Parameters
+    ----------
+    array
+        The variable.
+    dims
+        Its dimensions along the surface.
+    beside
+        All datasets, the selection along further axes, and the record.
+    any_axes
+        Whether coordinates of the axes serve that are neither longitude and latitude nor x and y.
+
+    Raises
+    ------
+    FieldError
+        When no dataset has positions for these dimensions.
     """
     datasets, drawn, _ = beside
     shape = tuple(_size(d, array, datasets) for d in dims)
@@ -221,7 +234,13 @@ def _even_cells(
 
 
 def ordered(array: xr.DataArray, record: Record, step: str) -> xr.DataArray:
-    """Return a variable whose axes of the surface are in order, by their labels."""
+    """Return a variable whose surface has its rows and columns in the order of their labels.
+
+    Raises
+    ------
+    FieldError
+        When unordered labels repeat a value.
+    """
     for dim in horizontal_dims(array):
         line = coordinate_of(array, dim)
         if line is None or line.dtype.kind not in "fiu" or line.size < 3:

@@ -105,7 +105,13 @@ class Orientation(NamedTuple):
 def component_units(pair: Pair, record: Record) -> tuple[str, tuple[float, float]]:
     """Return the unit of a velocity, and the factors of its variables to it.
 
-    The unit is empty where neither has one. The factor of a direction is that to radians.
+    The unit is empty where neither has one. A direction has the factor to radians.
+
+    Raises
+    ------
+    FieldError
+        When the units of the components cannot be converted to each other, or are no units of
+        velocity.
     """
     if pair.kind in directions.ANGULAR:
         unit = select.velocity_unit(pair.u, any_kind=pair.named)
@@ -148,7 +154,13 @@ def _angle_factor(pair: Pair, record: Record) -> float:
 
 
 def orientation(flow: Flow, wanted: str | None) -> Orientation:
-    """Return the directions of components by the rules of this module."""
+    """Return the directions of components by the rules of this module.
+
+    Raises
+    ------
+    FieldError
+        When ``wanted`` is no known direction, or does not fit the positions.
+    """
     if wanted is not None and wanted not in {*DIRECTIONS, *CURVED}:
         known = {**DIRECTIONS, **CURVED}
         expected = ", ".join(f"{key!r} ({words})" for key, words in known.items())
@@ -314,7 +326,23 @@ class Flow:
 
 
 def read_flow(data: Any, options: FieldOptions, record: Record) -> Flow:
-    """Find the velocity of a dataset, its grid and its places; a FieldError has the remedy."""
+    """Find the velocity of a dataset, its grid and its positions.
+
+    Parameters
+    ----------
+    data
+        A dataset, a list of datasets, or what :func:`as_datasets` makes into them.
+    options
+        Options of the field.
+    record
+        Record of what was chosen automatically.
+
+    Raises
+    ------
+    FieldError
+        When the data have no velocity or several, no positions, components that do not fit
+        together, or lack what the options select.
+    """
     choice = Choice.of(options)
     datasets = as_datasets(data, record, choice)
     choice.used |= datasets.used

@@ -60,7 +60,13 @@ def is_between(one: Floats, other: Floats, period: float | None = None) -> bool:
 
 
 def numbers(one: AnyArray, other: AnyArray) -> tuple[Floats, Floats]:
-    """Return two axes as numbers, dates and spans as seconds since the first label of one."""
+    """Return two axes as numbers; dates and spans become seconds since the first label of one.
+
+    Raises
+    ------
+    FieldError
+        When the labels cannot be compared, such as dates of different calendars.
+    """
     if one.dtype.kind not in "mMO" and other.dtype.kind not in "mMO":
         return one.astype(float), other.astype(float)
     try:

@@ -107,7 +107,22 @@ class Flags(NamedTuple):
 def find_masks(
     velocity: Sequence[xr.DataArray], datasets: Sequence[xr.Dataset], wanted: Any
 ) -> Iterator[Mask]:
-    """Yield the masks of a velocity, or the one of a name; ``False`` wants none."""
+    """Yield the masks of a velocity.
+
+    Parameters
+    ----------
+    velocity
+        Its components.
+    datasets
+        Datasets that may contain masks.
+    wanted
+        Name of the only mask; ``None`` for all that are recognised, ``False`` for none.
+
+    Raises
+    ------
+    FieldError
+        When no variable has the wanted name.
+    """
     if wanted is False:
         return
     beside = {

@@ -68,7 +68,25 @@ MOST_SEARCHED = 200
 def read_datasets(
     data: Any, options: FieldOptions, *, name: str = "", regions: bool = False
 ) -> GridArrays | TriangleArrays | Regions:
-    """Read the arrays of a field; with ``regions`` no nodes, if any part can be read by itself."""
+    """Read the arrays of a field from datasets.
+
+    Parameters
+    ----------
+    data
+        A dataset, a list of datasets, or what :func:`as_datasets` makes into them.
+    options
+        Options of the field.
+    name
+        Name of the field.
+    regions
+        Whether no nodes are read if any part can be read by itself.
+
+    Raises
+    ------
+    FieldError
+        When the options are for meshes or contradict each other, or the data have no velocity that
+        can be drawn.
+    """
     options.refuse(OF_MESHES, "meshes, but this is a dataset")
     projection, uncertainty, record = options.projection, options.uncertainty, Record()
     if options.globe and projection not in (None, GLOBE):

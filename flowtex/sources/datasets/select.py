@@ -184,7 +184,13 @@ def _is_angle(array: xr.DataArray) -> bool:
 
 
 def two_names(vectors: str | None) -> tuple[str, str] | tuple[None, None]:
-    """Return the names of two components with a comma between, as ``"uo,vo"``."""
+    """Return the names of two components, such as ``("uo", "vo")`` of ``"uo,vo"``.
+
+    Raises
+    ------
+    FieldError
+        When the text is not two names with a comma between.
+    """
     if vectors is None:
         return None, None
     names = [word.strip() for word in vectors.split(",")]
@@ -283,7 +289,13 @@ def _preference(pair: Pair) -> tuple[int, int, bool]:
 
 
 def velocity_unit(array: xr.DataArray, *, any_kind: bool = False) -> str:
-    """Return a variable's unit of velocity, or of any kind; empty where it has no unit."""
+    """Return a variable's unit of velocity, or of any kind; empty where it has no unit.
+
+    Raises
+    ------
+    FieldError
+        When the unit is not one of velocity, unless ``any_kind`` is set.
+    """
     unit = str(array.attrs.get("units", "")).strip()
     if unit.lower() in units.NONE:
         return ""
@@ -400,7 +412,13 @@ def _directions(u: xr.DataArray) -> str:
 
 
 def variable(datasets: Sequence[xr.Dataset], name: str) -> xr.DataArray:
-    """Return a variable of one of several datasets."""
+    """Return a variable by its name, from the first of several datasets that has it.
+
+    Raises
+    ------
+    FieldError
+        When none has it.
+    """
     for ds in datasets:
         if name in ds.data_vars:
             return ds[name]

@@ -104,7 +104,14 @@ def _mean(values: Floats, axis: int, sides: Sides) -> Floats:
 
 
 def find_grid(u: xr.DataArray, v: xr.DataArray, beside: Beside, *, along_earth: bool) -> Grid:
-    """Return the grid of two components, or raise if they are not half a cell apart."""
+    """Return the grid of two components, at the same places or half a cell apart.
+
+    Raises
+    ------
+    FieldError
+        When the components differ in size or lie neither at the same places nor half a cell apart,
+        or have no positions.
+    """
     dims, (datasets, _, record) = (horizontal_dims(u), horizontal_dims(v)), beside
     nemo = _nemo_places(u, v, beside, along_earth=along_earth)
     if nemo is not None:

@@ -41,7 +41,13 @@ LARGEST_VALUE = 1e15
 
 
 def numbers_in(array: xr.DataArray | xr.Variable) -> Floats:
-    """Return the values of a variable as float64; missing data are NaN."""
+    """Return the values of a variable as float64; missing data are NaN.
+
+    Raises
+    ------
+    FieldError
+        When the values are not numbers.
+    """
     values = values_in(array)
     if values.dtype.kind not in "fiub":
         raise FieldError(

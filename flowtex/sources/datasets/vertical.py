@@ -66,7 +66,27 @@ def read_section(
     *,
     name: str,
 ) -> GridArrays:
-    """Read a vertical section, from the names of a component along it and a vertical one."""
+    """Read a vertical section, from the names of a component along it and a vertical one.
+
+    Parameters
+    ----------
+    datasets
+        The datasets with both components.
+    options
+        Options of the field; ``vectors`` names the components.
+    record
+        Record of what was chosen automatically.
+    close
+        Closes the files after a step has been read.
+    name
+        Name of the field.
+
+    Raises
+    ------
+    FieldError
+        When a component does not exist, the two have different dimensions, or the section has no
+        coordinates that can be drawn.
+    """
     one, two = (variable(datasets, str(name)) for name in two_names(options.vectors))
     u, v, choice = str(one.name), str(two.name), axes.Choice.of(options)
     if set(one.dims) != set(two.dims):

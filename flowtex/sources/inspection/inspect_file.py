@@ -69,10 +69,22 @@ PADDING = 16
 
 
 def inspect_file(path: Path, *, whole: bool = True) -> None:
-    """Raise a FieldError for a file that is incomplete, needs too much memory, or links to others.
+    """Check a file before a reader opens it.
 
     Members of a series and blocks are inspected as well, each once for each time of change, and
-    folders of Zarr. ``whole`` is whether arrays are read as a whole, as those of meshes.
+    folders of Zarr.
+
+    Parameters
+    ----------
+    path
+        The file.
+    whole
+        Whether arrays are read as a whole, as readers of meshes do.
+
+    Raises
+    ------
+    FieldError
+        When the file is incomplete, needs too much memory, or links to other files.
     """
     if path.is_dir() and any((path / name).is_file() for name in DOCUMENTS):
         check_zarr(path)
@@ -273,7 +285,13 @@ def check_netcdf(data: Data, *, whole: bool) -> None:
 
 
 def check_variables(count: int) -> None:
-    """Raise a FieldError for too many variables, or other entries of a header."""
+    """Check the number of variables, or of other entries of a header.
+
+    Raises
+    ------
+    FieldError
+        When there are more than ``MOST_VARIABLES``.
+    """
     if count > MOST_VARIABLES:
         raise FieldError(
             f"the file has {count:,} variables, dimensions or attributes; expected at most "
@@ -384,10 +402,22 @@ class _Header:
 
 
 def check_hdf5(path: Path, *, whole: bool) -> None:
-    """Raise a FieldError for a file that links to others, is cut, or does not fit into memory.
+    """Check an HDF5 file before a reader opens it.
 
     External storage, external links and virtual datasets would make the reader read any file that
     the author of this one names.
+
+    Parameters
+    ----------
+    path
+        The file.
+    whole
+        Whether datasets are read as a whole.
+
+    Raises
+    ------
+    FieldError
+        When the file links to others, is cut or damaged, or does not fit into memory.
     """
     import h5py
 

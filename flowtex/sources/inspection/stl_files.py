@@ -19,7 +19,13 @@ TEXT_BYTES = 256
 
 
 def check_stl(data: Data) -> None:
-    """Raise a FieldError for a binary file with more or fewer triangles than it declares."""
+    """Check the number of triangles of a binary file; text is not checked.
+
+    Raises
+    ------
+    FieldError
+        When the file has more or fewer triangles than its header declares.
+    """
     beginning = data[:TEXT_BYTES]
     if beginning.lstrip().lower().startswith(TEXT) and b"\0" not in beginning:
         return

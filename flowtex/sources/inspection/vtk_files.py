@@ -64,9 +64,21 @@ def is_xml(head: bytes) -> bool:
 
 
 def check_vtk_xml(path: Path, data: Data, *, is_piece: bool = False) -> list[Path]:
-    """Return the files that a file names, if its arrays fit into it and into memory.
+    """Check that the arrays of a file fit into it and into memory; return the files that it names.
 
-    ``is_piece`` is whether it has a part of a grid that another file describes.
+    Parameters
+    ----------
+    path
+        The file.
+    data
+        Its bytes.
+    is_piece
+        Whether it has a part of a grid that another file describes.
+
+    Raises
+    ------
+    FieldError
+        When the file is cut, is in UTF-16, or declares more than memory holds.
     """
     if b"\0" in data[:4]:
         raise FieldError("the file is in UTF-16, which VTK does not write; convert it to UTF-8")

@@ -56,7 +56,13 @@ class CheckedStore(WrapperStore[Store]):
     async def get(
         self, key: str, prototype: BufferPrototype, byte_range: ByteRequest | None = None
     ) -> Buffer | None:
-        """Return an object or a part of it, ``None`` for a missing one."""
+        """Return an object or a part of it, ``None`` for a missing one.
+
+        Raises
+        ------
+        FieldError
+            When the object is a metadata document that fails :func:`check_document`.
+        """
         result = await self._store.get(key, prototype, byte_range)
         folder, _, name = key.rpartition("/")
         if result is not None and name in DOCUMENTS:

@@ -49,7 +49,13 @@ class Slice:
     text: str
 
     def of(self, mesh: pv.DataSet) -> pv.PolyData:
-        """Return the section of a volume."""
+        """Return the section of a volume.
+
+        Raises
+        ------
+        FieldError
+            When the plane does not cut the mesh.
+        """
         # Polygons would be torn where some of their points nearly coincide.
         middle = self.point or mesh.center
         cut = mesh.slice(normal=self.normal, origin=middle, generate_triangles=True)
@@ -69,7 +75,13 @@ class Contour:
     text: str
 
     def of(self, mesh: pv.DataSet) -> pv.PolyData:
-        """Return the contour in a volume whose array is on points."""
+        """Return the contour in a volume whose array is on points.
+
+        Raises
+        ------
+        FieldError
+            When the array never has the value.
+        """
         cut = mesh.contour([self.value], scalars=self.name)
         if not cut.n_cells:
             low, high = mesh.get_data_range(self.name)
@@ -82,7 +94,13 @@ Cut = Slice | Contour
 
 
 def slice_of(raw: Any) -> Slice:
-    """Return the plane that is given as text or numbers."""
+    """Return a plane from a text, such as ``"x=0.5"``, a normal, or a pair (normal, point).
+
+    Raises
+    ------
+    FieldError
+        When it is none of these, or the normal is zero.
+    """
     normal: Any = raw
     point: Any = None
     if isinstance(raw, str):
@@ -105,7 +123,13 @@ def slice_of(raw: Any) -> Slice:
 
 
 def contour_of(raw: Any) -> Contour:
-    """Return the contour that is given as text or a pair."""
+    """Return a contour from a text, such as ``"pressure=101325"``, or a pair (name, value).
+
+    Raises
+    ------
+    FieldError
+        When it is neither, or the value is not finite.
+    """
     pair = raw.rpartition("=")[::2] if isinstance(raw, str) else raw
     if isinstance(pair, (list, tuple)) and len(pair) == 2 and isinstance(pair[0], str):
         name, value = pair[0].strip(), _number(pair[1])
@@ -131,7 +155,14 @@ def _number(raw: Any) -> float:
 
 
 def check_cut(mesh: pv.DataSet, cut: Cut | None) -> None:
-    """Raise a FieldError for a mesh that cannot be cut so, or has no surface."""
+    """Check that a mesh has a surface, or that a cut of it has one.
+
+    Raises
+    ------
+    FieldError
+        When the mesh has no cells with an area, is a surface already, or lacks the array of the
+        contour.
+    """
     dimension = mesh.max_cell_dimensionality
     if not mesh.n_cells:
         raise FieldError("the mesh has no cells; check the file or filter that made it")

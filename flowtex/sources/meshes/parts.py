@@ -58,7 +58,24 @@ class TimeStep:
 def time_steps(
     source: Any, block: int | str | None = None, *, cut: bool = False, record: Record | None = None
 ) -> Iterator[TimeStep]:
-    """Yield the time steps of a mesh, blocks, a list or a reader, or of one block of these."""
+    """Yield the time steps of a mesh, blocks, a list or a reader, or of one block of these.
+
+    Parameters
+    ----------
+    source
+        A mesh, a list with one mesh for each step, or a PyVista reader.
+    block
+        Number or name of a block.
+    cut
+        Whether a cut is drawn, for which volumes are read as a whole.
+    record
+        Record of what was chosen automatically.
+
+    Raises
+    ------
+    FieldError
+        When the list is empty, an item is no mesh, or the block does not exist.
+    """
     options: dict[str, Any] = {"cut": cut, "record": Record() if record is None else record}
     if is_reader(source):
         yield from _read(source, block, **options)
@@ -194,7 +211,13 @@ def _read(reader: Any, block: int | str | None, **options: Any) -> Iterator[Time
 
 
 def pick(mesh: Any, block: int | str) -> pv.DataSet:
-    """Return one of the meshes in a mesh, by number or by name."""
+    """Return one of the meshes in a mesh, by number, path or the last name of the path.
+
+    Raises
+    ------
+    FieldError
+        When there is no such block, or several have the name.
+    """
     parts = parts_of(mesh)
     ends = [name for name in parts if name.rpartition("/")[2] == block]
     for number, (name, part) in enumerate(parts.items()):
@@ -296,7 +319,13 @@ def _no_mesh(mesh: pv.DataObject, label: str) -> str:
 
 
 def check_arrays(step: TimeStep, first: TimeStep, velocity: MeshArray) -> None:
-    """Raise a FieldError for a step of another kind than the first, or without its vectors."""
+    """Check that a step is of the kind of the first, and has its vectors.
+
+    Raises
+    ------
+    FieldError
+        When a structured step has another size, or an array of the velocity is missing.
+    """
     sizes = [part_size(grid) for grid in (step.grid, first.grid)]
     if is_structured(first.grid) and sizes[0] != sizes[1]:
         text = f"{step.label} has {sizes[0]} and the first step has {sizes[1]}"
@@ -362,7 +391,22 @@ def _order(before: AnyArray, after: AnyArray, near: float) -> Indices | None:
 
 
 def check_nodes(first: Sheet, sheet: Sheet, label: str) -> None:
-    """Raise a FieldError for a step with another surface, or with nodes that moved."""
+    """Check that a step has the surface of the first.
+
+    Parameters
+    ----------
+    first
+        The surface of the first step.
+    sheet
+        The surface of the step.
+    label
+        What errors call the step.
+
+    Raises
+    ------
+    FieldError
+        When the surface has other nodes or triangles, or drawn nodes have moved.
+    """
     before, after = first.points, sheet.points
     if before.shape != after.shape or not np.array_equal(first.triangles, sheet.triangles):  # type: ignore[arg-type]
         raise FieldError(
@@ -380,7 +424,13 @@ def check_nodes(first: Sheet, sheet: Sheet, label: str) -> None:
 
 
 def ordered_times(steps: Sequence[TimeStep], record: Record) -> tuple[list[int], Any]:
-    """Return the order of steps by their times, and the times; ``None`` without them."""
+    """Return the order of steps by their times, and the times; ``None`` without them.
+
+    Raises
+    ------
+    FieldError
+        When two steps have the same time.
+    """
     numbers = list(range(len(steps)))
     times = [np.nan if step.time is None else step.time for step in steps]
     if lacking := [step.label for step in steps if step.time is None]:

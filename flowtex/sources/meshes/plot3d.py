@@ -113,7 +113,13 @@ def _dimensions(words: Sequence[Any], axes: int, *, marks: bool, multiple: bool)
 
 
 def find_solution(grid: Path) -> Path:
-    """Find the solution beside a grid: ``xyz`` in its name gives ``q``, or its suffix does."""
+    """Find the solution beside a grid: ``xyz`` in its name gives ``q``, or its suffix does.
+
+    Raises
+    ------
+    FieldError
+        When the folder of the grid has no file with one of these names.
+    """
     names = list(dict.fromkeys(_solution_names(grid)))
     for name in names:
         if (grid.parent / name).is_file():

@@ -44,7 +44,23 @@ FLAT = 1e-10
 
 
 def read_meshes(mesh: Any, options: FieldOptions, *, name: str = "") -> GridArrays | TriangleArrays:
-    """Read the arrays for :meth:`FlowField.from_pyvista` from a mesh or a series of them."""
+    """Read the arrays for :meth:`FlowField.from_pyvista` from a mesh or a series of them.
+
+    Parameters
+    ----------
+    mesh
+        A mesh, a list of meshes, or a PyVista reader.
+    options
+        Options of the field.
+    name
+        Name of the field.
+
+    Raises
+    ------
+    FieldError
+        When the options are for datasets or do not fit the mesh, it has no vectors that can be the
+        velocity, or the steps of a series differ in their nodes.
+    """
     record = Record()
     options.refuse(OF_EARTH, "datasets, but this is a mesh")
     plane, periodic, sign_free = options.plane, options.periodic, bool(options.sign_free)

@@ -42,7 +42,19 @@ class MeshVelocity:
     def of(cls, stored: MeshArray, components: str | None, record: Record) -> MeshVelocity:
         """Return the velocity for the directions that the user names.
 
-        Raises a FieldError for directions that a mesh does not have.
+        Parameters
+        ----------
+        stored
+            The vectors of the mesh.
+        components
+            Directions of their components; ``None`` for x, y and z.
+        record
+            Record of what was done.
+
+        Raises
+        ------
+        FieldError
+            When ``components`` is not one of ``DIRECTIONS``.
         """
         if components is None:
             return cls(stored, stored)

@@ -104,7 +104,22 @@ def data_of(mesh: pv.DataSet, where: str) -> pv.DataSetAttributes:
 
 
 def with_array(mesh: pv.DataSet, name: str, values: AnyArray) -> pv.DataSet:
-    """Return a mesh with values at its points or cells as an array."""
+    """Return a mesh with values at its points or cells as an array.
+
+    Parameters
+    ----------
+    mesh
+        The mesh, which does not change.
+    name
+        Name of the array.
+    values
+        One value for each point or cell, (N,).
+
+    Raises
+    ------
+    FieldError
+        When the number of values is neither the number of points nor of cells.
+    """
     mesh = mesh.copy(deep=False)
     for where, count in (("points", mesh.n_points), ("cells", mesh.n_cells)):
         if values.shape == (count,):
@@ -160,7 +175,22 @@ def thick_axes(points: AnyArray) -> list[int]:
 
 
 def select_velocity(mesh: pv.DataSet, vectors: Any, record: Record) -> MeshArray:
-    """Return the selected vectors; of ``None`` those that can be the velocity."""
+    """Return the vectors that are drawn.
+
+    Parameters
+    ----------
+    mesh
+        The mesh.
+    vectors
+        Name of an array, or of its components with commas between; ``None`` to find it.
+    record
+        Record of what was chosen automatically.
+
+    Raises
+    ------
+    FieldError
+        When no such array exists, it has no 2 or 3 components, or several could be the velocity.
+    """
     arrays = catalogue(mesh)
     known = f"with their numbers of components: {', '.join(map(str, arrays)) or 'none'}"
     if vectors is None:

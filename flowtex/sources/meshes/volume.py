@@ -167,7 +167,22 @@ class Plane:
 
 
 def find_plane(mesh: Any, plane: Any, record: Record) -> Plane:
-    """Return the plane of a structured mesh; ``None`` stands for itself, or its middle."""
+    """Return the plane of a structured mesh that is drawn.
+
+    Parameters
+    ----------
+    mesh
+        The mesh.
+    plane
+        Text such as ``"k=20"``; ``None`` for a mesh that is a plane, or the middle along k.
+    record
+        Record of what was chosen automatically.
+
+    Raises
+    ------
+    FieldError
+        When the mesh has no surface, or no such plane.
+    """
     dimensions = tuple(mesh.dimensions)
     size = " x ".join(map(str, dimensions)) + " nodes (I x J x K)"
     if min(dimensions) < 1 or sum(n > 1 for n in dimensions) < 2:

@@ -196,7 +196,13 @@ def _levels(ds: xr.Dataset, mesh: Mesh) -> xr.Dataset:
 
 
 def with_points(datasets: Sequence[xr.Dataset]) -> list[xr.Dataset]:
-    """Return datasets in which the dimension of scattered points is called ``NODES``."""
+    """Return datasets in which the dimension of scattered points is called ``NODES``.
+
+    Raises
+    ------
+    FieldError
+        When the positions are a trajectory, or move with time.
+    """
     pairs = [pair for pair in find_pairs(datasets) if pair.rank <= NAMED]
     for x, y in position_pairs([ds[name] for ds in datasets for name in ds.variables]):
         times = [d for d in map(str, x.dims) if axis_kind(x, d) == TIME]
@@ -261,6 +267,11 @@ def join_faces(
     ``chosen`` are axes along which one entry is selected, and ``wanted`` the directions of the
     components, if they are given. Coordinates along a part of the axes only count the nodes, and
     are dropped. Raises a FieldError for components along rows and columns.
+
+    Raises
+    ------
+    FieldError
+        When the components lie along rows and columns, which differ from face to face.
     """
     u = pair.u
     sizes = {str(d): n for d, n in u.sizes.items() if FACES_OF_GLOBE.match(str(d))}

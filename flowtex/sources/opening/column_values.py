@@ -65,7 +65,13 @@ def _parsed(column: Any) -> Floats:
 
 
 def column_numbers(column: Any) -> AnyArray:
-    """Return a column as numbers, if it has some; a FieldError names other texts among these."""
+    """Return a column as numbers, if most of its texts are some.
+
+    Raises
+    ------
+    FieldError
+        When other texts are among the numbers.
+    """
     if not _is_text(column):
         return plain_values(column)
     numbers = _parsed(column)

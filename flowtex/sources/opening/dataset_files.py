@@ -166,6 +166,11 @@ def of_tree(tree: xr.DataTree, file: Path | None = None) -> list[xr.Dataset]:
     """Return the one group of a tree (of a file) with a velocity, or its root.
 
     Where no group has both components, all groups with variables are returned.
+
+    Raises
+    ------
+    FieldError
+        When several groups have a velocity, and the root has none.
     """
     parts = {node.path: node.to_dataset() for node in tree.subtree}
     groups = [path for path, ds in parts.items() if find_pairs([ds])]
@@ -296,7 +301,13 @@ def _time_axis(datasets: Sequence[xr.Dataset]) -> str:
 
 
 def joined(datasets: Sequence[xr.Dataset], record: Record | None = None) -> xr.Dataset:
-    """Join steps of a series in the order of their times, on the positions that all have."""
+    """Join steps of a series in the order of their times, on the positions that all have.
+
+    Raises
+    ------
+    FieldError
+        When the datasets are not steps of one series, such as on different grids.
+    """
     xarray, record = import_extra("xarray", "xarray"), record or Record()
     datasets = [_decoded(ds) for ds in datasets]
     name = _time_axis(datasets)
@@ -373,7 +384,13 @@ def file_and_group(path: Path) -> tuple[Path, str]:
 
 
 def dataset_paths(given: Any) -> list[Path]:
-    """Return the paths of data of the Earth, or of groups as ``model.nc/ocean``; else none."""
+    """Return the paths of dataset files, or of groups as ``model.nc/ocean``; else none.
+
+    Raises
+    ------
+    FieldError
+        When it is no path or list of paths, or a path is invalid.
+    """
     items = given if isinstance(given, (list, tuple)) else [given]
     if not all(isinstance(item, (str, os.PathLike)) for item in items):
         raise FieldError(f"path is {brief(given)}; expected the path of a file, or a list of paths")
@@ -408,7 +425,15 @@ def open_datasets(paths: Sequence[Path]) -> Datasets:
 
 
 def open_files(path: Path) -> Datasets:
-    """Open one file; GRIB has a dataset for each group of messages with common axes."""
+    """Open one file; GRIB has a dataset for each group of messages with common axes.
+
+    Raises
+    ------
+    FieldError
+        When the file is damaged or too large, or the group does not exist.
+    ModuleNotFoundError
+        When a package that reads the format is not installed.
+    """
     xarray = import_extra("xarray", "xarray")
     # Its library must be loaded before those of other readers, which contain another PROJ.
     import_extra("pyproj", "xarray")
@@ -467,7 +492,13 @@ def _closers(parts: Iterable[Any]) -> list[Callable[[], None]]:
 
 
 def import_cfgrib() -> Any:
-    """Import the reader of GRIB; the error for a missing library has the remedy."""
+    """Import the reader of GRIB.
+
+    Raises
+    ------
+    ModuleNotFoundError
+        When cfgrib or its library ecCodes is missing; the error has the remedy.
+    """
     try:
         return import_extra("cfgrib", "grib")
     except RuntimeError as error:

@@ -59,7 +59,20 @@ MOST_SHOWN = 60
 
 
 def as_dataset(item: Any, *, several: bool) -> xr.Dataset:
-    """Return a dataset, or make one of a table or array, which is a component if ``several``."""
+    """Return a dataset, or make one of a table or array.
+
+    Parameters
+    ----------
+    item
+        A dataset, an array, a table, or the text of one.
+    several
+        Whether an array is one of several, so that it is one component.
+
+    Raises
+    ------
+    FieldError
+        When the item has another type.
+    """
     xarray = import_extra("xarray", "xarray")
     if isinstance(item, xarray.Dataset):
         return item
@@ -87,7 +100,13 @@ def _read_text(stream: io.StringIO) -> xr.Dataset:
 
 
 def of_table(table: Any) -> xr.Dataset:
-    """Return the dataset of a table with a row for each point, or each point and time."""
+    """Return the dataset of a table with a row for each point, or each point and time.
+
+    Raises
+    ------
+    FieldError
+        When no columns are lon and lat, or x and y.
+    """
     frame, attributes = _plain(table)
     columns = [str(c) for c in frame.columns]
     pair = _pair(columns, LONGITUDE, LATITUDE) or _pair(columns, ACROSS, UPWARD)
@@ -250,7 +269,13 @@ def _points(frame: Any, points: Any, axes: list[str], x: str, y: str) -> xr.Data
 
 
 def of_features(collection: dict[str, Any]) -> xr.Dataset:
-    """Return the dataset of points in GeoJSON, whose properties are columns."""
+    """Return the dataset of points in GeoJSON, whose properties are columns.
+
+    Raises
+    ------
+    FieldError
+        When a feature is no point.
+    """
     pandas = import_extra("pandas", "xarray")
     rows = []
     for feature in collection.get("features", []):
@@ -265,7 +290,14 @@ def of_features(collection: dict[str, Any]) -> xr.Dataset:
 
 
 def read_csv(path: Path) -> xr.Dataset:
-    """Read columns separated by commas, semicolons, tabs or spaces, below a header."""
+    """Read columns separated by commas, semicolons, tabs or spaces, below a header.
+
+    Raises
+    ------
+    FieldError
+        When the first line has numbers in place of names, a row has another number of values, or
+        the file does not fit into memory.
+    """
     pandas = import_extra("pandas", "xarray")
     check_memory(TEXT_GROWTH * path.stat().st_size, "the file")
     with path.open(encoding="utf-8-sig") as file:
@@ -362,7 +394,14 @@ def _check_end(frame: Any) -> None:
 
 
 def read_vec(path: Path) -> xr.Dataset:
-    """Read vectors of particle image velocimetry; those with a flag of 0 or less are blank."""
+    """Read vectors of particle image velocimetry; those with a flag of 0 or less are blank.
+
+    Raises
+    ------
+    FieldError
+        When the first line does not declare the variables, a row has another number of values, or
+        the file does not fit into memory.
+    """
     pandas = import_extra("pandas", "xarray")
     check_memory(TEXT_GROWTH * path.stat().st_size, "the file")
     with path.open(encoding="utf-8", errors="replace") as file:
@@ -383,7 +422,13 @@ def read_vec(path: Path) -> xr.Dataset:
 
 
 def read_winds(path: Path) -> xr.Dataset:
-    """Read the components of the first level and time."""
+    """Read the components of the first level and time from the JSON of wind maps, or GeoJSON.
+
+    Raises
+    ------
+    FieldError
+        When the file is neither, or a component is missing, damaged or on another grid.
+    """
     xarray = import_extra("xarray", "xarray")
     check_memory(TEXT_GROWTH * path.stat().st_size, "the file")
     try:

@@ -62,7 +62,13 @@ class Clusters:
 
     @classmethod
     def of(cls, field: FlowField) -> Clusters:
-        """Return the finest level, in which each node represents itself."""
+        """Return the finest level, in which each node represents itself.
+
+        Raises
+        ------
+        FieldError
+            When the field has no triangles.
+        """
         surface = field.surface
         if not isinstance(surface, TriangleSurface):
             raise FieldError(

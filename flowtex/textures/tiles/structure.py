@@ -146,7 +146,14 @@ def shared_structure(field: FlowField) -> Structure:
 
 
 def check_structure(field: FlowField, settings: Settings) -> None:
-    """Raise a SettingsError where the settings request a structure that a field does not have."""
+    """Check that a field has the structure that the settings request.
+
+    Raises
+    ------
+    SettingsError
+        When the field is sign-free and a structure is requested, or nullclines are requested on a
+        curved surface.
+    """
     for name in STRUCTURE:
         if not (value := getattr(settings, name)):
             continue

@@ -159,7 +159,20 @@ class TrianglePyramid(Pyramid):
     def region(
         self, keys: Sequence[TileKey], widening: int = 1
     ) -> dict[TileKey, TextureSet | None]:
-        """Return the textures of tiles of a level, as for structured surfaces."""
+        """Return the textures of tiles of a level, as for structured surfaces.
+
+        Parameters
+        ----------
+        keys
+            Tiles of one level.
+        widening
+            Factor of the width of triangles around a tile along which lines are traced.
+
+        Raises
+        ------
+        KeyError
+            When a tile does not exist.
+        """
         number = keys[0].level
         count = 2 ** (self._steps(number) - 1)
         for key in keys:

@@ -123,7 +123,18 @@ class CriticalPoints(UserList[CriticalPoint]):
     """
 
     def of_kind(self, *kinds: str) -> CriticalPoints:
-        """Return the points of the given kinds."""
+        """Return the points of the given kinds.
+
+        Parameters
+        ----------
+        kinds
+            One or more of :data:`KINDS`, such as ``"saddle"``.
+
+        Raises
+        ------
+        FieldError
+            When a kind does not exist.
+        """
         for kind in kinds:
             if kind not in KINDS:
                 raise FieldError(

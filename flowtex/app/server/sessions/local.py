@@ -65,7 +65,13 @@ class LimitedMessages(UnChunker):
         super().set_max_message_size(min(size, MESSAGE_BYTES))
 
     def process_chunk(self, chunk: bytes) -> Any:
-        """Return the message that a piece ends; a ValueError if it is malformed or too long."""
+        """Return the message that a piece completes, or ``None`` while pieces are missing.
+
+        Raises
+        ------
+        ValueError
+            When the message is malformed or too long, or too many messages are incomplete.
+        """
         message = super().process_chunk(chunk)
         if len(self.pending_messages) > OPEN_MESSAGES:
             self.release_pending_messages()
@@ -127,7 +133,21 @@ def restrict(endpoint: Any) -> None:
 
 
 def opener(make_app: MakeApp, secret: str) -> OpenSession:
-    """Return a function that opens sessions in this process, for connections with the secret."""
+    """Return a function that opens sessions in this process.
+
+    Parameters
+    ----------
+    make_app
+        Makes the application of a session for its trame server.
+    secret
+        Word that a connection to a session must send.
+
+    Raises
+    ------
+    BaseException
+        By the returned function: any error of making or starting the application, after the server
+        of the session has been removed.
+    """
 
     async def open_session() -> Session:
         server = get_server(f"flowtex-session-{next(_count)}")
@@ -186,7 +206,13 @@ class LocalSession(Session):
         return await self._routes.respond(name, request)
 
     async def carry(self, socket: web.WebSocketResponse) -> None:
-        """Carry messages between a page and its application until one of them ends."""
+        """Carry messages between a page and its application until one of them ends.
+
+        Raises
+        ------
+        ValueError
+            When the page sends text; messages are binary.
+        """
 
         async def send(is_binary: bool, content: Any) -> None:  # noqa: FBT001 wslink's call
             with suppress(ConnectionError):  # the page is gone, and the loop below ends

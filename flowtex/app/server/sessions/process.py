@@ -47,8 +47,23 @@ def process_opener(
 ) -> OpenSession:
     """Return a function that opens sessions in separate processes, as for ``Child``.
 
-    The entry makes a :class:`HostedSession`, which is asked to open the request; ``opened`` is
-    called with its messages.
+    Parameters
+    ----------
+    entry
+        Name of the function that makes a :class:`HostedSession` in the process.
+    preload
+        Modules that the process imports before it is needed.
+    request
+        What the session is asked to open.
+    opened
+        Called with the messages of the session when it is open.
+
+    Raises
+    ------
+    FieldError
+        By the returned function, when the flow cannot be shown or the process ends.
+    RuntimeError
+        By the returned function, after any other error in the process; its text has the traceback.
     """
 
     async def open_session(*, again: bool = True) -> Session:
@@ -128,7 +143,13 @@ class ProcessSession(Session):
         return response
 
     async def carry(self, socket: web.WebSocketResponse) -> None:
-        """Carry messages between a page and the process until one of them ends."""
+        """Carry messages between a page and the process until one of them ends.
+
+        Raises
+        ------
+        ValueError
+            When the page sends text; messages are binary.
+        """
         address = f"/page/{self.token}/ws"
         async with self._http.ws_connect(address, max_msg_size=0, autoclose=False) as connection:
 

@@ -168,10 +168,15 @@ class Sessions:
         return self._ready.static
 
     async def find(self, token: str | None) -> Session:
-        """Return the session of a page: that of its token, or a new one where there is room.
+        """Return the session with the token of a page, or a new one where there is room.
 
-        When another page is connected with the token, such as that of a copied tab, the page gets
-        its own session.
+        When another page is connected with the token, such as a copied tab, the page gets its own
+        session.
+
+        Raises
+        ------
+        UnavailableError
+            When the limit of pages is reached, and none of them has been away for long.
         """
         session = self._by_token.get(token or "")
         if session is not None:
