@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 #: Arguments that have no meaning for arrays.
 NOT_OF_ARRAYS = (
     *("plane", "slice", "contour", "block", "preference"),
-    *("level", "sel", "isel", "mask", "direction"),
+    *("level", "sel", "isel", "mask"),
 )
 #: Names of the positions, in small letters.
 PLACES = (("x", "y", "z"), ("x", "y"))
@@ -65,6 +65,7 @@ def read_arrays(data: Any, options: FieldOptions, scalars: Mapping[str, Any]) ->
     is_named = isinstance(data, Mapping) or _has_files(data) or _fields_of(data) is not None
     if is_named:
         return _read_named(data, options, scalars)
+    _refuse_direction(options)
     if options.vectors is not None:
         raise FieldError(f"vectors is {options.vectors!r}, but the arrays have no names; omit it")
     arrays = data if isinstance(data, tuple) else (data,)
@@ -119,6 +120,15 @@ def _labelled_field(
     if on_earth and options.components is None:
         chosen = replace(chosen, components="earth")
     return FlowField.from_xarray(data, **_without(chosen, "uncertainty"))
+
+
+def _refuse_direction(options: FieldOptions) -> None:
+    if options.direction is not None:
+        raise FieldError(
+            f"direction is {options.direction!r}, a variable of a dataset or a column of a table. "
+            "Of these arrays pass the components, as in flowtex.show(x, y, speed * np.exp(1j * "
+            "angle)) for an angle in radians from x"
+        )
 
 
 def _without(options: FieldOptions, name: str) -> dict[str, Any]:
@@ -198,6 +208,7 @@ def _read_named(data: Any, options: FieldOptions, scalars: Mapping[str, Any]) ->
         columns = {key: host_array(key, data[key]) for key in known.values()}
         frame = import_extra("pandas", "xarray").DataFrame(columns)
         return FlowField.from_xarray(frame, **_without(options, "uncertainty"))
+    _refuse_direction(options)
     lon_lat = _first(EARTH_PLACES, known)
     places = _first(PLACES, known) or lon_lat
     velocity = _velocity_names(options.vectors, known)

@@ -142,12 +142,35 @@ def test_labelled_arrays_by_position_are_read_by_labels() -> None:
     check(read(ds.one, ds.two))
 
 
+def test_columns_of_speed_and_direction() -> None:
+    columns = {"x": X.ravel(), "y": Y.ravel(), "ff": np.hypot(U, V).ravel()}
+    columns["dd"] = np.arctan2(V, U).ravel()
+    with pytest.warns(UserWarning, match="ff and dd, a direction to, as nothing says otherwise"):
+        field = read(columns, vectors="ff", direction="dd")
+    # A direction is clockwise from the y axis.
+    assert np.allclose(field.velocity[0, ..., :2], np.stack([V, U], axis=-1))
+
+
+@quiet
+@pytest.mark.parametrize("components", ["polar", "cylindrical"])
+def test_components_along_a_radius_and_an_angle(components: str) -> None:
+    angle = np.arctan2(Y, X)
+    radial = U * np.cos(angle) + V * np.sin(angle)
+    around = V * np.cos(angle) - U * np.sin(angle)
+    check(read(LINE_X, LINE_Y, radial, around, components=components))
+    check(read({"x": LINE_X, "y": LINE_Y, "u": radial, "v": around}, components=components))
+
+
 def test_other_arguments_of_arrays_are_refused() -> None:
     for options in ({"plane": "k=3"}, {"level": 500}, {"mask": False}):
         with pytest.raises(FieldError, match="applies to meshes, files and datasets"):
             read(LINE_X, LINE_Y, U, V, **options)
     with pytest.raises(FieldError, match="vectors is 'u,v', but the arrays have no names"):
         read(LINE_X, LINE_Y, U, V, vectors="u,v")
+    named = {"x": LINE_X, "y": LINE_Y, "speed": np.hypot(U, V), "angle": np.arctan2(V, U)}
+    for arrays in ((named,), tuple(named.values())):
+        with pytest.raises(FieldError, match=r"direction is 'angle'.* speed \* np.exp\(1j \* ang"):
+            read(*arrays, direction="angle")
     with pytest.raises(FieldError, match=r"u is array.*; expected the name of an array. Pass"):
         FieldOptions(u=U, v=V)  # type: ignore[arg-type]
     with pytest.raises(
