@@ -273,8 +273,12 @@ def locate(field: Any, point: ArrayLike, *, tolerance: float = 0.1) -> tuple[flo
     """Return (j, i), in cells, of a point (3,), or (2,) with z = 0, in the mesh's own coordinates.
 
     The result is ``None`` if the surface is farther than ``tolerance`` times the size of the
-    nearest cell: another program may divide a curved cell into other triangles. Raises a FieldError
-    if the point is not two or three finite numbers.
+    nearest cell: another program may divide a curved cell into other triangles.
+
+    Raises
+    ------
+    FieldError
+        When the point is not two or three finite numbers.
 
     Examples
     --------

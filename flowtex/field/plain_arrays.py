@@ -62,8 +62,12 @@ class PlainFlow:
 def plain_grid(points: Any, velocity: Any, components: Sequence[Any]) -> PlainFlow:
     """Return the grid of the arguments of :meth:`FlowField.from_arrays`, as this documents them.
 
-    Two arrays that have no other meaning stay as they are, and the field lists their faults. Raises
-    a FieldError for others, and for scattered points.
+    Two arrays that have no other meaning stay as they are, and the field lists their faults.
+
+    Raises
+    ------
+    FieldError
+        When the points are scattered, or the shapes have no meaning together.
     """
     if isinstance(velocity, LazySteps):
         return PlainFlow(points, velocity)

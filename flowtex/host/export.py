@@ -457,7 +457,10 @@ def _packed(
 def source_of(store: str) -> str:
     """Return the source to which the policy of a page allows connections for its store.
 
-    Raises a FieldError if the address is unreadable or contains secrets.
+    Raises
+    ------
+    FieldError
+        When the address is unreadable, or contains a name, a password or a query.
     """
     if not isinstance(store, str):
         raise FieldError(f"store is {store!r}; expected an address, such as './flow.zarr'")

@@ -169,8 +169,12 @@ class FlowtexComponent:
     def for_browser(self) -> tuple[FlowField, dict[str, Any], Bodies]:
         """Return the first flow, its arguments, and the other meshes of the plotter.
 
-        A warning lists what the browser cannot draw. Raises a FieldError if the plotter has no
-        flow.
+        A warning lists what the browser cannot draw.
+
+        Raises
+        ------
+        FieldError
+            When the plotter has no flow.
         """
         if not self._handles:
             raise FieldError(
@@ -278,7 +282,12 @@ def open_plotter(
     """Return a plotter with one scene or two side by side, and the handles of their textures.
 
     The ``options`` go to the PyVista plotter. Two scenes share a camera, and labels show how they
-    differ. Raises a FieldError when the view has axes, which only browsers draw.
+    differ.
+
+    Raises
+    ------
+    FieldError
+        When the view has axes, which only browsers draw.
     """
     if view.axes is not None:
         raise FieldError(

@@ -396,7 +396,11 @@ class Options:
         """Sort fields of the option classes, and settings, by name.
 
         Classes that are accepted are ``"field"``, ``"appearance"`` and ``"view"``, all by default.
-        Raises a SettingsError for an unknown argument, with the nearest names.
+
+        Raises
+        ------
+        SettingsError
+            When no argument has the name; the error lists the nearest names.
         """
         accepted = {name: tuple(vars(_KINDS[name]())) for name in kinds or _KINDS}
         array: Any = values.get("scalars")

@@ -289,8 +289,12 @@ def cover_place(
 ) -> Coverage:
     """Return the coverage of one place, also where it is hidden.
 
-    The pixel is one of a picture of some width and height in pixels. Raises a FieldError when the
-    place is behind the camera, or its triangle is seen edge on.
+    The pixel is one of a picture of some width and height in pixels.
+
+    Raises
+    ------
+    FieldError
+        When the place is behind the camera, or its triangle is seen edge-on.
     """
     points = surface.points.reshape(-1, 3)[place.nodes] - surface.center
     matrix = camera.matrix(size[0] / size[1], surface.center)
@@ -318,8 +322,11 @@ def cover_place(
 def camera_facing(surface: Surface, place: SurfacePoint, pixel: float) -> Camera:
     """Return the camera that looks straight at a place, for a picture of one pixel.
 
-    Raises a FieldError when the width of the pixel, in the mesh's units, is not positive, or the
-    triangle has no area.
+    Raises
+    ------
+    FieldError
+        When the width of the pixel, in the mesh's units, is not positive, or the triangle has no
+        area.
     """
     if not 0 < pixel < np.inf:
         raise FieldError(

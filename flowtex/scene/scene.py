@@ -115,7 +115,11 @@ class Scene:
         """Return a second scene of the same field, or of another one, that differs in changes.
 
         They are fields of :class:`Appearance` and settings; :func:`follow` updates the others.
-        Raises a FieldError when they choose data, and the errors of the constructor.
+
+        Raises
+        ------
+        FieldError
+            When the changes choose data, or cannot be drawn.
         """
         field_names = []
         for name in FieldOptions.__dataclass_fields__:

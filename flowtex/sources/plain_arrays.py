@@ -59,7 +59,10 @@ def are_labelled(data: Any) -> bool:
 def read_arrays(data: Any, options: FieldOptions, scalars: Mapping[str, Any]) -> FlowField:
     """Return the field of plain arrays, with scalars of the same nodes.
 
-    Raises a FieldError for an argument of other data, and for names or shapes without a meaning.
+    Raises
+    ------
+    FieldError
+        When an argument is for other data, or names or shapes have no meaning.
     """
     options.refuse(NOT_OF_ARRAYS, "meshes, files and datasets, but these are arrays")
     is_named = isinstance(data, Mapping) or _has_files(data) or _fields_of(data) is not None

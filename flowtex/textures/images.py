@@ -50,8 +50,13 @@ def as_picture(image: Any) -> Floats32:
     """Check an image and return its texels, (h, w, 4): colours times opacity, and opacity.
 
     The image is grey (H, W), colours (H, W, 3) or colours and opacity (H, W, 4), row 0 at the top:
-    whole numbers without sign, floats from 0 to 1, or booleans. Raises an ImageError for another
-    one. Row 0 of the texels is the bottom. There are no more than :data:`LARGEST` on a side.
+    whole numbers without sign, floats from 0 to 1, or booleans. Row 0 of the texels is the bottom.
+    There are no more than :data:`LARGEST` on a side.
+
+    Raises
+    ------
+    ImageError
+        When the image has another shape or type, is empty, or has values outside of 0 to 1.
     """
     try:
         array = np.asarray(image)

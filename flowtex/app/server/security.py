@@ -64,8 +64,12 @@ def known_hosts(host: str, allowed: Iterable[str] = ()) -> frozenset[str]:
     """Return the names of a server that listens on ``host``.
 
     On JupyterHub, and behind another proxy of Jupyter, any name is valid: the proxy passes on an
-    unknown name, and Jupyter's own token guards it. Raises a FieldError when an item of ``allowed``
-    is not a name.
+    unknown name, and Jupyter's own token guards it.
+
+    Raises
+    ------
+    FieldError
+        When an item of ``allowed`` is not the name of a host, or has a port.
     """
     names = [*LOCAL, host]
     if host in ("0.0.0.0", "::", ""):

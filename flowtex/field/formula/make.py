@@ -225,7 +225,10 @@ def is_line(text: str) -> bool:
 def line_arguments(line: str) -> tuple[list[str], dict[str, Any]]:
     """Return the expressions of a line, and the arguments of :func:`flowtex.formula` by name.
 
-    Raises a FieldError when numbers are invalid.
+    Raises
+    ------
+    FieldError
+        When numbers or times cannot be read, or a parameter has a reserved name.
     """
     expressions = []
     named = {}

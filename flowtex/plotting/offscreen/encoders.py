@@ -60,8 +60,15 @@ def default_fps(path: str | Path) -> float:
 def check_movie(path: str | Path, size: Size, fps: float, quality: int = DEFAULT_QUALITY) -> None:
     """Check that a movie can be written, before anything is drawn.
 
-    Drawing checks the length of the sides and the frames per second. Raises a MovieError with the
-    remedy, and for an MP4 without PyAV a ModuleNotFoundError with the command that installs it.
+    Drawing checks the length of the sides and the frames per second.
+
+    Raises
+    ------
+    MovieError
+        When the suffix is not one of a movie, the size or the quality does not fit the format, or
+        the file cannot be written.
+    ModuleNotFoundError
+        When PyAV is missing for an MP4; the error names the command that installs it.
     """
     path = checked_target(path)
     suffix = path.suffix.lower()
@@ -127,7 +134,10 @@ class MovieWriter:
     def add(self, picture: Bytes) -> None:
         """Add the next picture, (H, W, 3) uint8.
 
-        Raises a MovieError when its size is not that of the movie.
+        Raises
+        ------
+        MovieError
+            When the picture has another size than the movie.
         """
         height, width = picture.shape[:2]
         if (width, height) != self._size:

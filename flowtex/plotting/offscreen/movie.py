@@ -67,8 +67,12 @@ def frame_times(
 ) -> FrameTimes:
     """Return the time or clock of each frame; :func:`flowtex.movie` has the parameters.
 
-    For a steady flow the settings ``motion``, ``noise`` and ``period`` matter. Raises a MovieError
-    when a number is out of its range, or a steady flow would stand still.
+    For a steady flow the settings ``motion``, ``noise`` and ``period`` matter.
+
+    Raises
+    ------
+    MovieError
+        When a number is out of its range, or a steady flow would stand still.
     """
     expected = f"more than 0 and at most {MAX_FPS:g} frames per second"
     checked_number("fps", fps, math.ulp(0.0), MAX_FPS, expected=expected, error=MovieError)

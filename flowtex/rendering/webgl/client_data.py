@@ -261,7 +261,10 @@ class ClientData:
     def step(self, step: int) -> Parts:
         """Return the arrays of a time step, the smallest first.
 
-        Raises an IndexError when the step does not exist.
+        Raises
+        ------
+        IndexError
+            When the step does not exist.
         """
         if not 0 <= step < self.steps:
             raise IndexError(f"time step {step} does not exist: expected 0 to {self.steps - 1}")

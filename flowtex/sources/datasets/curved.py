@@ -44,7 +44,10 @@ def is_around(dim: str) -> bool:
 def with_lonlat(ds: xr.Dataset) -> xr.Dataset:
     """Return a dataset whose colatitudes and longitudes are those of a globe in degrees.
 
-    Raises a FieldError for colatitudes beyond the poles.
+    Raises
+    ------
+    FieldError
+        When colatitudes lie beyond the poles.
     """
     lines = {str(name): line for name, line in ds.coords.items() if line.dims == (name,)}
     colatitudes = {name: line for name, line in lines.items() if COLATITUDES.match(name)}

@@ -185,7 +185,10 @@ def is_constant(values: Floats) -> bool:
 def declared_numbers(array: xr.DataArray, name: str) -> list[float]:
     """Return the numbers of an attribute, which may be text or a list; empty without it.
 
-    Raises a FieldError for anything else.
+    Raises
+    ------
+    FieldError
+        When the attribute contains anything but numbers.
     """
     given = array.attrs.get(name)
     if given is None:
@@ -204,7 +207,10 @@ def declared_numbers(array: xr.DataArray, name: str) -> list[float]:
 def valid_range(array: xr.DataArray) -> tuple[float, float] | None:
     """Return the least and greatest valid value of a variable that xarray has unpacked.
 
-    Raises a FieldError for attributes that are no numbers, or not as many as expected.
+    Raises
+    ------
+    FieldError
+        When the attributes are no numbers, or not as many as expected.
     """
     encoding = array.encoding
     low, high = -np.inf, np.inf

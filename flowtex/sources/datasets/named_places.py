@@ -16,7 +16,10 @@ if TYPE_CHECKING:
 def placed_on(ds: xr.Dataset, x: str | None, y: str | None) -> xr.Dataset:
     """Return a dataset whose only positions are two coordinates, across and upward.
 
-    Raises a FieldError if one of them is missing, or if they are exchanged.
+    Raises
+    ------
+    FieldError
+        When one of the coordinates is missing, they are exchanged, or they do not span a surface.
     """
     if x is None and y is None:
         return ds

@@ -110,7 +110,12 @@ def choose_pair(
 ) -> Pair:
     """Return the velocity that is named, or the only one that is likely.
 
-    ``direction`` names the angle of a speed. Raises a FieldError without a likely velocity.
+    ``direction`` names the angle of a speed.
+
+    Raises
+    ------
+    FieldError
+        When no variables are likely to be the velocity, or several are equally likely.
     """
     if direction is not None:
         return _with_direction(datasets, u, direction)

@@ -37,7 +37,12 @@ MOTION = ("x_change", "y_change")
 def as_points(ds: xr.Dataset, choice: Choice, record: Record) -> xr.Dataset:
     """Return trajectories as points at the chosen time, and other datasets as they are.
 
-    The choice is marked as used. Raises a FieldError if few trajectories have a point at the time.
+    The choice is marked as used.
+
+    Raises
+    ------
+    FieldError
+        When few trajectories have a position at the time.
     """
     parts = find_trajectories(ds)
     if parts is None:

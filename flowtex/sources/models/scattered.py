@@ -33,7 +33,12 @@ WITHIN = 0.2
 def edge_length(text: Any, unit: str, *, default: str) -> float:
     """Return a length such as ``50`` or ``"50 km"`` in a unit.
 
-    A number without a unit is in the ``default`` one. Raises a FieldError for any other value.
+    A number without a unit is in the ``default`` one.
+
+    Raises
+    ------
+    FieldError
+        When the value is not a positive length, or its unit is not one of length.
     """
     found = LENGTH.fullmatch(str(text).strip())
     own = default

@@ -111,7 +111,13 @@ class Tracks:
 
     @classmethod
     def of(cls, ds: xr.Dataset, parts: Parts) -> Tracks:
-        """Return the observations of trajectories. Raises a FieldError if there are none."""
+        """Return the observations of trajectories.
+
+        Raises
+        ------
+        FieldError
+            When no observation has a position and a time.
+        """
         x, y, time = parts
         names = [str(name) for name in ds.variables if {*ds[name].dims} == {*x.dims}]
         numeric = [name for name in names if ds[name].dtype.kind in "fiu" and name != time.name]

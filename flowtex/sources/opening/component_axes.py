@@ -50,8 +50,10 @@ KEPT = ("units", "grid_mapping", "mesh", "location")
 def of_array(array: xr.DataArray, *, several: bool) -> xr.Dataset:
     """Return the dataset of the components of an array; one of several may be a component.
 
-    Raises a FieldError for a single array without components, or with several axes that may have
-    them.
+    Raises
+    ------
+    FieldError
+        When a single array has no axis of components, or several axes may be the one.
     """
     if array.dtype.kind == "c":
         return _counted(_of_complex(array.rename("flow").to_dataset(), "flow", prefix=""))

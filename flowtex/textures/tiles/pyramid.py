@@ -341,8 +341,12 @@ class Pyramid:
         """Return the textures of tiles of a level, which are traced together on request.
 
         ``None`` means a tile of which nothing is drawn. The halo is ``widening`` times as wide as
-        paths of even speed need; :func:`is_cut` returns whether that was enough. Raises a KeyError
-        when a tile does not exist.
+        paths of even speed need; :func:`is_cut` returns whether that was enough.
+
+        Raises
+        ------
+        KeyError
+            When a tile does not exist.
         """
         level = keys[0].level
         shape = self.shape(level) if 0 <= level < self.depth else (0, 0)

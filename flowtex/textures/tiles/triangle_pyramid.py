@@ -166,7 +166,7 @@ class TrianglePyramid(Pyramid):
         keys
             Tiles of one level.
         widening
-            Factor of the width of triangles around a tile along which lines are traced.
+            Factor of the width of the halo around a tile.
 
         Raises
         ------
