@@ -53,6 +53,7 @@ ended() {
 check style ruff check
 check format ruff format --check
 check imports lint-imports --no-cache
+check "density of the code" python "$here/density.py"
 sh "$here/client.sh" "$bin" ready || failed="$failed, tools of the browser client"
 "$bin/mypy" >"$logs/types" 2>&1 &
 types=$!

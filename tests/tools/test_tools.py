@@ -38,6 +38,52 @@ def test_a_test_concerns_itself(concerned_tests: Callable[[set[str]], list[str]]
     assert concerned_tests({"tests/test_gone.py", "CHANGELOG.md"}) == []
 
 
+DENSE = '''"""A module."""
+
+def spread(a):
+    """Return nothing.
+
+    Raises
+    ------
+    ValueError
+        Always.
+    """
+    # A comment.
+    first, second = a, [b for b in (c for c in a)]
+    raise ValueError(first if second else a if a else 0)
+
+def narrow(faults):
+    """Return nothing."""
+    raise_faults(faults)
+
+def _private():
+    raise KeyError
+'''
+
+
+def test_density_counts_code_and_undocumented_errors(tmp_path: Path) -> None:
+    (tmp_path / "dense.py").write_text(DENSE)
+    (tmp_path / "_util").mkdir()
+    long_body = "    a += 1\n" * 41
+    (tmp_path / "_util" / "long.py").write_text(f"def f(a):\n{long_body}    raise ValueError(a)\n")
+    density = runpy.run_path(str(ROOT / "tools" / "density.py"))["measure"](tmp_path)
+    assert dict(density.counts) == {
+        "comprehensions": 2,
+        "nested comprehensions": 1,
+        "conditional expressions": 2,
+        "nested conditional expressions": 1,
+        "parallel assignments": 1,
+        "bodies over 40 lines": 1,
+    }
+    assert density.code == 7 + 43
+    assert density.number("parallel assignments") == 1000 / 50
+    assert density.raising == 2
+    assert density.undocumented == [f"{tmp_path / 'dense.py'}:15 narrow"]
+    faults = density.faults()
+    assert faults[0].startswith("40 comprehensions; expected at most ")
+    assert faults[-1].startswith("1 of 2 public functions that raise an error have no section")
+
+
 @pytest.fixture(scope="module")
 def uv_settings() -> Callable[[str], dict[str, str]]:
     found: Callable[[str], dict[str, str]] = runpy.run_path(str(ROOT / "tools" / "run_uv.py"))[
