@@ -23,11 +23,12 @@ if TYPE_CHECKING:
     import xarray as xr
 
 LONGITUDE = re.compile(
-    r"^(nav_lon|(.*_)?lon(gitude)?(_\w+)?|lon[a-z]?|xlong.*|glam\w?|geolon\w*|[tu]long|xc|xg)$",
+    r"^(nav_lon|(.*_)?lon(gitude)?(_\w+)?|lon[a-z]?|[cev]lon|xlong.*|glam\w?|geolon\w*|[tu]long|xc|xg)$",
     re.I,
 )
 LATITUDE = re.compile(
-    r"^(nav_lat|(.*_)?lat(itude)?(_\w+)?|lat[a-z]?|xlat.*|gphi\w?|geolat\w*|[tu]lat|yc|yg)$", re.I
+    r"^(nav_lat|(.*_)?lat(itude)?(_\w+)?|lat[a-z]?|[cev]lat|xlat.*|gphi\w?|geolat\w*|[tu]lat|yc|yg)$",
+    re.I,
 )
 ACROSS = re.compile(r"^(x|x_?c|x_?g|x_\w+|xp1|rlon|projection_x_coordinate)$", re.I)
 UPWARD = re.compile(r"^(y|y_?c|y_?g|y_\w+|yp1|rlat|projection_y_coordinate)$", re.I)

@@ -18,6 +18,7 @@ from flowtex.sources.datasets.axes import FACES, LEVEL, LEVELS, NODES, TIME, axi
 from flowtex.sources.datasets.coordinates import ACROSS, LONGITUDE, SWAPS
 from flowtex.sources.datasets.select import MOVING, Pair, find_pairs
 from flowtex.sources.datasets.vertical import is_vertical
+from flowtex.sources.models.healpix import with_centres
 from flowtex.sources.models.model_mesh import POINTS, Mesh
 from flowtex.sources.reader_errors import values_in
 
@@ -119,11 +120,11 @@ def _of_models(variables: Mapping[str, xr.DataArray]) -> Iterator[Mesh]:
 def _bounded(variables: Mapping[str, xr.DataArray]) -> Iterator[Mesh]:
     """Yield meshes of cells with bounds, along one dimension."""
     for x in variables.values():
-        name = str(x.attrs.get("bounds", x.encoding.get("bounds", "")))
+        name = _bounds_of(x, variables)
         if x.ndim != 1 or name not in variables or _is_latitude(x):
             continue
         for y in variables.values():
-            name_y = str(y.attrs.get("bounds", y.encoding.get("bounds", "")))
+            name_y = _bounds_of(y, variables)
             if y.dims != x.dims or name_y not in variables or not _is_latitude(y):
                 continue
             bounds_x = variables[name]
@@ -134,9 +135,18 @@ def _bounded(variables: Mapping[str, xr.DataArray]) -> Iterator[Mesh]:
                 yield Mesh("cells with bounds", a, b)
 
 
+def _bounds_of(c: xr.DataArray, variables: Container[str]) -> str:
+    """Return the name of the corners of cells: as declared, or as ICON and CDO call them."""
+    name = str(c.attrs.get("bounds", c.encoding.get("bounds", "")))
+    if name:
+        return name
+    usual = (f"{c.name}_{word}" for word in ("vertices", "bnds", "bounds"))
+    return next((known for known in usual if known in variables), "")
+
+
 def with_mesh_axes(datasets: Sequence[xr.Dataset]) -> list[xr.Dataset]:
     """Return datasets whose mesh has dimensions of known names; without faces it is of points."""
-    datasets = [_completed(ds) for ds in datasets]
+    datasets = with_centres([_completed(ds) for ds in datasets])
     mesh = find_mesh(datasets)
     if mesh is None:
         return with_points(datasets)

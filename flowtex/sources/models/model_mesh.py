@@ -26,6 +26,10 @@ POINTS = "points"
 #: Decimals of degrees to which bounds of neighbours agree.
 SAME_DEGREES = 5
 LONGITUDES = re.compile(r"lon|lambda", re.IGNORECASE)
+#: Names of longitudes that ICON gives in radians, of cells, edges and vertices.
+OF_ICON = re.compile(r"[cev]lon(_vertices)?$")
+#: Longitude below which all values of such a model are in radians.
+MOST_RADIANS = 6.5
 RADIANS = re.compile(r"^rad(ian)?s?$", re.IGNORECASE)
 
 
@@ -118,8 +122,9 @@ class Mesh:
         a, b = self._raw
         if self.is_earth:
             unit = str(self.x.attrs.get("units", ""))
+            in_radians = self.kind in ("MPAS", "ICON", "FESOM") or OF_ICON.match(str(self.x.name))
             radians = RADIANS.match(unit) or (
-                not unit and self.kind in ("MPAS", "ICON", "FESOM") and np.nanmax(np.abs(a)) < 6.5
+                not unit and in_radians and np.nanmax(np.abs(a)) < MOST_RADIANS
             )
             if radians:
                 a = np.degrees(a)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import direction_files
+import global_files
 import mesh_files
 import model_files
 import point_files
@@ -14,7 +15,7 @@ from known_flow import check
 from supported import ROWS, Supported, drawn
 
 pytest.importorskip("pyproj")
-MODULES = (direction_files, mesh_files, model_files, point_files, text_forms)
+MODULES = (direction_files, global_files, mesh_files, model_files, point_files, text_forms)
 
 
 @pytest.mark.parametrize("row", ROWS, ids=lambda row: row.make.__name__)
