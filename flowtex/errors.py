@@ -104,7 +104,7 @@ def import_package(package: str, what: str) -> Any:
     Parameters
     ----------
     package
-        Name of the package; that of its module has ``_`` for ``-``.
+        Name of the package; the name of its module has ``_`` in place of ``-``.
     what
         The data that need it, such as ``"a .msh file"``.
 

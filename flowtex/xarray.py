@@ -68,7 +68,7 @@ class FlowtexAccessor:
 
     @property
     def _dataset(self) -> xr.Dataset:
-        """The dataset, or that of the components of an array."""
+        """The dataset, or a dataset of the components of an array."""
         return as_dataset(self._data, several=False)
 
     def field(self, *names: str, **options: Any) -> FlowField:

@@ -15,7 +15,7 @@ import numpy as np
 from flowtex._util.array_types import Floats
 from flowtex.errors import FieldError
 
-#: Names that other packages give to arguments, and those of ours.
+#: Names that other packages give to arguments, and flowtex's names for them.
 SYNONYMS = {
     **dict.fromkeys(("vmin", "vmax", "range"), "clim"),
     **dict.fromkeys(("colormap", "palette", "cm"), "cmap"),

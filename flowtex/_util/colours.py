@@ -298,7 +298,7 @@ def matplotlib_norm(norm: Any) -> Any:
 
 
 def with_limits(norm: Any, low: float, high: float) -> Any:
-    """Return a copy of a norm whose missing limits are those of a range."""
+    """Return a copy of a norm whose missing limits become the ends of a range."""
     norm = copy.copy(matplotlib_norm(norm))
     norm.autoscale_None(np.array([low, high]))
     if not norm.vmin < norm.vmax:

@@ -19,7 +19,7 @@ class UnreadableError(FieldError):
 class Form:
     """How the values of an argument are written."""
 
-    words: str = ""  #: Help of a shell for the argument, where it differs from that of Python.
+    words: str = ""  #: Help of a shell for the argument, where it differs from Python's.
     #: Returns the value of a text, or of all texts; an UnreadableError says what was expected.
     read: Callable[[Any], Any] = str
     write: Callable[[Any], str] = str  #: Returns the text of a value.

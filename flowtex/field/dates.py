@@ -229,7 +229,7 @@ def expected_times(start: Any, times: Any) -> str:
 
 
 def written_date(start: Any) -> list[Any] | None:
-    """Return a date as JSON: numbers, and its calendar unless it is that of ``datetime``."""
+    """Return a date as JSON: numbers, and its calendar unless ``datetime`` has the same."""
     if start is None:
         return None
     parts = ("year", "month", "day", "hour", "minute", "second", "microsecond")

@@ -1,4 +1,4 @@
-"""What reads the finest level of a large field, of which only a coarse one is in memory."""
+"""Reading the finest level of a large field that has only a coarse level in memory."""
 
 from __future__ import annotations
 

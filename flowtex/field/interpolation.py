@@ -57,8 +57,8 @@ def at_moment(
 ) -> Floats:
     """Return values between two steps of (T or 1, ...), or a part of them.
 
-    ``moment`` is that of :func:`steps_around`. Where one step has no value, NaN, that of the nearer
-    step is taken.
+    ``moment`` comes from :func:`steps_around`. Where one step has no value, NaN, the value of the
+    nearer step is taken.
     """
     before, after, share = moment
     if len(steps) == 1:

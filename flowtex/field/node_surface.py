@@ -124,7 +124,7 @@ class IndexVelocity:
     components: Steps  #: (u_i, u_j) in cells per unit of time, (T, J, I, 2).
     #: Length of the velocity along the surface in the mesh's units per unit of time, (T, J, I).
     speed: Steps
-    #: Root mean square of the part out of the surface over that of the whole, 0 to 1.
+    #: Root mean square of the part out of the surface, as a share of the whole, 0 to 1.
     normal_share: float
 
 

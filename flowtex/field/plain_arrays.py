@@ -118,7 +118,7 @@ def read_plain(arrays: Sequence[Any]) -> PlainFlow:
 
 
 def _by_role(arrays: Sequence[Any]) -> tuple[Sequence[Any], Sequence[Any]]:
-    """Return the arrays of positions, and those of the velocity."""
+    """Return the arrays of positions, and the arrays of the velocity."""
     count = len(arrays)
     if count == 1 or (count == 2 and _are_components(*arrays)):
         return (), arrays
@@ -246,7 +246,7 @@ def _components_last(velocity: AnyArray, grid: tuple[int, ...] | None) -> AnyArr
     found = []
     for axis in (0, 1, last):
         nodes = (*shape[:axis], *shape[axis + 1 :])
-        # Between two axes of nodes there are no components, but after that of time.
+        # An axis of components lies after the axis of time, but never between two axes of nodes.
         is_allowed = axis in (0, last) or len(shape) == 4
         is_new = is_allowed and axis not in found
         if is_new and shape[axis:] and shape[axis] in COMPONENTS and _fits(nodes, grid):
@@ -265,7 +265,7 @@ def _components_last(velocity: AnyArray, grid: tuple[int, ...] | None) -> AnyArr
 
 
 def _fits(nodes: tuple[int, ...], grid: tuple[int, ...] | None) -> bool:
-    """Return whether a shape is that of the nodes, perhaps with an axis of time before."""
+    """Return whether an array of a shape has one value per node, perhaps after an axis of time."""
     if grid is None:
         return len(nodes) in (2, 3) and min(nodes[-2:]) > 1
     return nodes == grid or (len(nodes) == len(grid) + 1 and nodes[1:] == grid)

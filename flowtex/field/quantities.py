@@ -131,7 +131,7 @@ def values_at(field: Any, index: ArrayLike, time: Any = None) -> PointValues:
 
 
 def _moment(field: Any, time: Any) -> Any:
-    """Return a time for the finest level of a field, of which the field may have one step."""
+    """Return a time for the finest level of a field that may itself have only one step."""
     if time is None or field.steady:
         return float(field.times[0])
     return time
@@ -332,7 +332,7 @@ class FieldQuantities:
             ``"vorticity"``: positive where the flow turns anticlockwise, seen from outside, or
             from the positive side of a flat surface. ``"divergence"``. ``"shear"``: the magnitude
             of the rate of strain without divergence, sqrt((du/dx - dv/dy)^2 + (dv/dx + du/dy)^2).
-            ``"okubo_weiss"``: the square of the shear less that of the vorticity, negative in
+            ``"okubo_weiss"``: squared shear less squared vorticity, negative in
             vortices. ``"ftle"``: the finite-time Lyapunov exponent, the largest rate at which
             particles that start near a node separate.
         horizon

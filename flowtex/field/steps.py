@@ -1,4 +1,4 @@
-"""Nodal values of many time steps, each of which is read when it is requested."""
+"""Nodal values of many time steps; each step is read when it is requested."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ MOST_EXAMINED = 4_000_000  #: Most values of a series that are examined before i
 
 
 class LazySteps:
-    """An array (T, J, I, ...) of which a step is read when it is indexed.
+    """An array (T, J, I, ...) that reads a step when it is indexed.
 
     It takes an index of NumPy's whose first part chooses steps: a number gives an array, a slice or
     a list of numbers another array of steps, read later. ``np.asarray`` reads all. ``read`` returns
@@ -170,7 +170,7 @@ def moves(steps: Steps) -> bool:
 
 
 def map_steps(steps: Steps, function: Callable[[Floats], Floats]) -> Steps:
-    """Apply a function to each step (J, I, ...) of an array, or later to those of a lazy one."""
+    """Apply a function to each step (J, I, ...) of an array; lazy steps are mapped when read."""
     if isinstance(steps, LazySteps):
         return steps.map(function)
     return np.stack([function(step) for step in steps])

@@ -33,7 +33,7 @@ DEFAULTS: dict[str, Any] = {
 }
 #: First place of a vertical bar, at the left border, as tall as those of PyVista.
 VERTICAL = {"width": 0.08, "height": 0.45, "position_x": 0.02, "position_y": 0.04}
-#: First place of a horizontal bar, that of PyVista's theme.
+#: First place of a horizontal bar, as in PyVista's theme.
 HORIZONTAL = {"width": 0.6, "height": 0.08, "position_x": 0.35, "position_y": 0.05}
 #: Arguments of PyVista's bars that flows set themselves.
 OWN_ARGUMENTS = ("mapper", "lookup_table", "cmap", "clim", "render", "unique_bar", "theme")
@@ -106,7 +106,7 @@ def checked_bar_options(options: Mapping[str, Any] | None) -> dict[str, Any]:
 
 
 def first_arguments(options: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the arguments with which PyVista makes a bar, of those that users give."""
+    """Return the arguments of users with which PyVista makes a bar."""
     if is_vertical(options):
         place = VERTICAL
     else:

@@ -29,7 +29,7 @@ LIGHT = {"ambient": const.AMBIENT_LIGHT, "diffuse": const.DIFFUSE_LIGHT}
 _count = itertools.count(1)
 #: Fields of the appearance that change colours alone.
 COLOURS = ("n_colors", "flip_scalars", "nan_color", "below_color", "above_color")
-FIRST = 1.0  #: Observers of a frame run by falling priority: this one before those that draw it.
+FIRST = 1.0  #: Priority of the observer of a frame: before the observers that draw it.
 
 
 def _state(mesh: Any) -> tuple[int, ...]:

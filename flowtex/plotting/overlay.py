@@ -1,8 +1,8 @@
 """Overlays above and below a flow, as VTK actors that follow the actor of the flow.
 
 They have its visibility and its place, cannot be picked, and do not affect the bounds. Lines and
-dots have the same width in pixels everywhere. Those of the Earth are coasts, meridians and
-parallels, and land and the globe below; those of the structure belong to the step that is nearest.
+dots have the same width in pixels everywhere. Overlays of the Earth are coasts, meridians and
+parallels, and land and the globe below. Overlays of the structure show the nearest time step.
 """
 
 from __future__ import annotations
@@ -39,10 +39,12 @@ from flowtex.rendering.webgl.marks import RIM_COLOR, RIM_OPACITY, strokes
 from flowtex.scene.scene import Scene
 from flowtex.textures.tiles.structure import STRUCTURE
 
-LAND_FARTHER = 2e-4  #: How much farther than the surface land is, as a share of the distance.
+#: Distance of land behind the surface, as a share of the distance from the eye.
+LAND_FARTHER = 2e-4
 #: Pixels by which the globe is lower: coarse triangles sink by up to this many.
 GLOBE_LOWER_PX = 0.5
-NEAREST = 1e-3  #: Nearest that the front of the globe is drawn, as a share of the farthest.
+#: Least distance at which the front of the globe is drawn, as a share of the farthest one.
+NEAREST = 1e-3
 GLOBE_CELLS = 180  #: Cells along a meridian of the globe below the surface.
 #: Structures are found one after the other, in the background.
 _pool = pool(1, "flowtex-structure")
@@ -61,7 +63,7 @@ class Part(NamedTuple):
 #: surface comes nearer over the width of a line.
 LINES_NEARER = 1e-2
 ABOVE_SHARE = 0.2  #: Additional nearness of a line for each line below it, as a share of that.
-#: Observers of a frame run by falling priority: this one after those that set the clipping range.
+#: Priority of the observer of a frame: after the observers that set the clipping range.
 LAST = -1.0
 POINTS = vtkDataObject.FIELD_ASSOCIATION_POINTS
 #: Point array of a line mesh: the other end of each segment. The shader uses the same name.
@@ -200,7 +202,7 @@ def piece_mesh(start: Floats, end: Floats) -> pv.PolyData:
 class MapOverlay(Overlay):
     """The Earth behind one flow whose field has a projection."""
 
-    _field: Any = None  #: Of which the lines were made.
+    _field: Any = None  #: The whole field for which the lines were made.
     _radius: float | None = None
 
     def show(self, scene: Scene) -> None:

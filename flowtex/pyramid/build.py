@@ -413,7 +413,7 @@ def _write_finest(run: _Run, source: NodeSource, workers: Threads) -> None:
 
 
 def _existing_units(run: _Run) -> Iterator[Part | TileTask]:
-    """Yield the parts, and the tiles at a step, of which an array has an object."""
+    """Yield the parts, and the tiles at a step, for which an array has an object."""
     for _, array in described(run.about).members(max_depth=None):
         axes: Any = getattr(array.metadata, "dimension_names", None) or ()
         level, _, kind = array.path.partition("/")

@@ -1,4 +1,4 @@
-"""The finest level of a large field near a place, of which only the tiles there are read."""
+"""The finest level of a large field near a place; only the tiles there are read."""
 
 from __future__ import annotations
 
@@ -139,7 +139,7 @@ def _renumbered(number: float, count: int, level: int, other: int) -> float:
 
 
 class FinestOfRegions:
-    """All nodes of a dataset, of which a field has only some lines."""
+    """All nodes of a dataset, for a field that has only some of its lines."""
 
     def __init__(self, source: RegionSource, coarse: FlowField) -> None:
         self._source = source

@@ -1,4 +1,4 @@
-"""Sources of a pyramid: a field, or a dataset of which each task reads a region."""
+"""Sources of a pyramid: a field, or a dataset from which each task reads a region."""
 
 from __future__ import annotations
 
@@ -129,7 +129,7 @@ class FieldSource:
 
 
 class RegionSource:
-    """A dataset of which each task reads a region; its ``field`` has no nodes."""
+    """A dataset from which each task reads a region; its ``field`` has no nodes."""
 
     travels = True
     has_position = None

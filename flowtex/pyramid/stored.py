@@ -160,7 +160,7 @@ class StoredPyramid(Pyramid):
         return made
 
     def _check_nodes(self, key: TileKey, textures: TextureSet, steps: Sequence[int]) -> None:
-        """Raise a PyramidError where nodes of a tile are not those of the level above."""
+        """Raise a PyramidError where nodes of a tile differ from the level above."""
         stored = self._stored
         field = textures.geometry.field
         drawn = textures.grid.drawn

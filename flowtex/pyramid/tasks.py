@@ -1,4 +1,4 @@
-"""The tasks of which a pyramid is built: each makes one shard, or a tile at some time steps.
+"""The tasks of building a pyramid: each makes one shard, or a tile at some time steps.
 
 They are plain functions of a place and of numbers, so that any process on any machine can run
 them. Each opens the store itself, and reads no more than what it needs.
@@ -71,7 +71,7 @@ MOST_SENT = 64_000_000  #: Most bytes sent to workers; a larger source contains 
 
 
 class TileTask(NamedTuple):
-    """A tile, and those of its destination times that are to be written."""
+    """A tile, and the destination times of it that are to be written."""
 
     key: TileKey
     steps: tuple[int, ...]
@@ -236,7 +236,7 @@ def _at_step(levels: Levels, level: int, step: int, rows: Indices, columns: Indi
 
 
 # An opened store is kept for one run: the next one may find another pyramid at the same place. Only
-# one is kept, as that of the run before would hold its data.
+# one is kept, because the one of the run before would hold its data.
 @lru_cache(maxsize=1)
 def _levels(place: str, run: str) -> Levels:
     del run
@@ -281,7 +281,7 @@ def write_tile(array: Arrays, pyramid: StoredPyramid, key: TileKey, steps: Seque
 
 
 def _textures(pyramid: StoredPyramid, key: TileKey) -> TextureSet | None:
-    """Return the textures of a tile, of which those that a browser traces are not traced here."""
+    """Return the textures of a tile; textures that a browser traces are not traced here."""
     if key.level == pyramid.depth:
         store = SliceStore(pyramid.root, parameter=pyramid.parameter, lines=pyramid.lines)
         return pyramid.root_textures(store)

@@ -33,7 +33,7 @@ class EvenBlocks:
     ) -> EvenBlocks:
         """Return the blocks for a grain in pixels, by first and end of columns and rows.
 
-        Pixels may be shifted from those of a picture, which ends before ``clip``.
+        Pixels may be shifted against the pixels of a picture, which ends before ``clip``.
         """
         deviation = const.EVEN_SIGMA * grain
         doublings = np.floor(np.log2(np.sqrt(2.0) * deviation))

@@ -148,7 +148,7 @@ def _ground_of(field: FlowField, *, tiled: bool) -> Ground:
 
 
 def _with_fringe(land: Bools, empty: Bools, step: int) -> Bools:
-    """Return land and what is without data beside it, of a grid of which each step is known."""
+    """Return land and places without data beside it, of a grid whose steps are all known."""
     near = scipy.ndimage.binary_dilation(land, np.ones((2 * step + 1, 2 * step + 1), dtype=bool))
     sea = empty & ~near
     wide = scipy.ndimage.binary_opening(sea, np.ones((FRINGE, FRINGE), dtype=bool))

@@ -124,13 +124,13 @@ def finer_part(pyramid: Pyramid, child: TileKey, above: TileKey | None) -> tuple
 
 
 def wanted_tiles(chosen: Choices) -> list[TileKey]:
-    """Return the tiles that have cells to show, those of the largest cells first."""
+    """Return the tiles that have cells to show, the largest cells first."""
     wanted = [key for key, choice in chosen.items() if key is not None and choice.needed]
     return sorted(wanted, key=lambda key: -chosen[key].pixels)
 
 
 def cover(chosen: Choices, ready: Callable[[TileKey], bool]) -> dict[TileKey | None, list[TileKey]]:
-    """Return the tiles to show of those that are ready, and the parts of each that others cover.
+    """Return the tiles to show among the ready ones, and the parts of each that others cover.
 
     A tile is replaced by finer ones where these cover all of it that is in view; until then the
     tiles of a coarser level are shown. The root is always ready.

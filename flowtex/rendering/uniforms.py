@@ -28,7 +28,7 @@ WAVE_PIXELS = 96.0  #: Pixels of flow in one turn of a grain, up to twice as man
 CLOCK_STEP = 2.0**-12  #: Step of the coarse part of the clock, exact times a power of two.
 MOST_TURNS = 2.0**12  #: End of the clock in base periods.
 
-EVEN_RADII = 2.5  #: Deviations of the bell of a local mean at which its blur ends.
+EVEN_RADII = 2.5  #: Standard deviations of the Gaussian of a local mean at which its blur ends.
 
 ARROW_PIECES = 12  #: Pieces of an arrow.
 ARROW_LEAST = 0.85  #: Least distance of two arrows over the mean one.
@@ -52,7 +52,7 @@ class ViewState:
     time: float = 0.0  #: Time that is shown of a field that varies, in its own unit.
     still: bool = False  #: Whether grains of a field that varies stand still.
     clock: float = 0.0  #: Clock of the streaming of a steady flow, in seconds.
-    density: float = 1.0  #: Pixels drawn, along a side, for one that the settings speak of.
+    density: float = 1.0  #: Drawn pixels, along a side, for one pixel of the settings.
     pixel: float = 0.0  #: Length of a pixel at the focus; 0 is as near as possible.
 
 

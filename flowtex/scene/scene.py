@@ -236,7 +236,7 @@ class Scene:
 
     @property
     def has_own_range(self) -> bool:
-        """Whether the automatic range of the colours is that of this flow, not of one before."""
+        """Whether the automatic colour range comes from this flow, not from one before."""
         return not any(name == self.scalar_name for name, _ in self._kept)
 
     @property
@@ -424,7 +424,7 @@ class Scene:
         return usual_ends(self._common_range(name), self._common_range(name, robust=True))
 
     def _common_range(self, name: str, *, robust: bool = False) -> tuple[float, float]:
-        """Return the range that scenes before this one had, or that of the data."""
+        """Return the range that scenes before this one had, or else the range of the data."""
         return self._kept.get((name, robust)) or self.scalar_range(name, robust=robust)
 
     @property

@@ -62,9 +62,9 @@ LEAST_OPENING = 0.02
 #: Up to how many nodes one of the blank lines between parts remains where a coarser view leaves
 #: lines out, if there is one.
 COARSE_NODES = 20_000
-#: Degrees beside the edge of a map where it is looked for.
+#: Degrees beside the edge of a map in which it is searched.
 STEP = 0.02
-#: Latitudes where the edge of a map is looked for.
+#: Latitudes at which the edge of a map is searched.
 EDGE_LATITUDES = np.linspace(-75.0, 75.0, 31)
 
 
@@ -90,16 +90,16 @@ class PlaneNodes:
 
 @dataclass(frozen=True, eq=False)
 class Chosen:
-    """Some rows and columns of a grid, of whose nodes some move to places between two."""
+    """Some rows and columns of a grid; some of their nodes move between two rows or columns."""
 
     rows: Indices | slice
     columns: Indices | slice
-    #: Rows and columns of those that move, and of two others between which they lie, (2, M).
+    #: Rows and columns of nodes that move, and of the two nodes between which they move, (2, M).
     moved: tuple[Indices, Indices, Indices] | None = None
     share: Floats | float = 0.0  #: Share of the way from one of these to the other, (M,).
 
     def __call__(self, values: Floats) -> Floats:
-        """Return values at the nodes, from those of the grid, (J, I)."""
+        """Return values at the nodes, from values of the grid, (J, I)."""
         chosen = np.array(values[self.rows][:, self.columns])
         if self.moved is not None:
             at, one, other = map(tuple, self.moved)
@@ -120,7 +120,7 @@ class MapNodes:
     lat: Floats
 
     def at(self, values: Floats) -> Floats:
-        """Return values at the nodes, from those of the grid."""
+        """Return values at the nodes, from values of the grid."""
         for chosen in self.choices:
             values = chosen(values)
         return values
@@ -468,7 +468,7 @@ class MeshMap:
     projection: Projection
     points: Floats  #: (P, 3).
     triangles: Indices  #: Numbers of points, (M, 3).
-    members: Indices  #: Numbers of the mesh's triangles, of which these are parts, (M,).
+    members: Indices  #: Number of the triangle of the mesh from which each was cut, (M,).
     nodes: Indices  #: Two nodes of the mesh between which each point lies, (P, 2).
     share: Floats  #: Share of the way from the first to the second, (P,).
     lon: Floats
@@ -476,12 +476,12 @@ class MeshMap:
     lost: int  #: Number of triangles that are left out, as the map tears them apart.
 
     def at(self, values: Floats) -> Floats:
-        """Return values (P,) from those at the nodes of the mesh, (N,)."""
+        """Return values (P,) from values at the nodes of the mesh, (N,)."""
         one, other = values[self.nodes[:, 0]], values[self.nodes[:, 1]]
         return np.asarray((1 - self.share) * one + self.share * other)
 
     def components(self, values: Floats) -> Floats:
-        """Return eastward and northward components, (2, P), from those at the mesh's nodes, (2, N).
+        """Return eastward and northward components, (2, P), from components at the nodes, (2, N).
 
         Between two nodes vectors are interpolated in space, as near a pole directions differ.
         """
@@ -503,7 +503,7 @@ def mesh_on_map(
 ) -> MeshMap:
     """Put triangles on a map, by its name; by default a flat one that suits the places.
 
-    ``lon`` and ``lat`` are those of the nodes, (N,).
+    ``lon`` and ``lat`` are the coordinates of the nodes in degrees, (N,).
     """
     projection = projection_of(places, name)
     numbers = np.arange(len(lon))
@@ -550,7 +550,7 @@ def _sides(triangles: Indices) -> Indices:
 def _cut(triangles: Indices, tear: Indices, pairs: Indices, first: int) -> tuple[Indices, Indices]:
     """Cut triangles, two of whose sides are torn, each into one before and two beyond the tears.
 
-    The second value has the numbers of the triangles of which the results are parts.
+    The second value has the number of the triangle from which each result was cut.
 
     ``tear`` has the numbers of the tears of the three sides, (M, 3), or -1. Of tear t, between the
     nodes of ``pairs``, the place just before it is the node ``first + t``, and that just after it

@@ -24,7 +24,7 @@ FAR_LAG = 4.0
 
 @dataclass(frozen=True, eq=False)
 class EdgePaths:
-    """The nodes of sharp edges, E of those in the textures."""
+    """The nodes of sharp edges, E of the nodes in the textures."""
 
     nodes: Bools  #: Which of the nodes in the textures they are.
     lengths: Floats  #: Length of the longest triangle at each, (E,).

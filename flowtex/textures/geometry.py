@@ -31,7 +31,7 @@ FARTHER = 3.0  #: How many times as far as on a straight surface a displacement 
 
 
 class NodeDisplacements:
-    """Map from displacements in index space to those in a frame (C, 3), for some nodes."""
+    """Map from displacements in index space to displacements in a frame (C, 3), for some nodes."""
 
     def __init__(
         self,
@@ -198,7 +198,7 @@ class DrawnSurface:
 
     @property
     def drawn(self) -> tuple[slice, slice | Indices]:
-        """Index of the nodes that are drawn in arrays over those of the field, (J, I).
+        """Index that selects the drawn nodes in arrays over the nodes of the field, (J, I).
 
         Raises
         ------

@@ -52,7 +52,7 @@ from flowtex.trace.store import SliceStore
 MOST_LAGS = 32  #: Most slices on each side, by the room in a shader.
 UNCERTAIN_LAYER = 3  #: The layer whose fourth channel is the uncertainty of the direction.
 HALF_MAX = 65504.0  #: Greatest number in half precision, in which texels are stored.
-SLOPE_ERROR = 2.0**-12  #: Relative error that is allowed in a slope: half of that of rounding.
+SLOPE_ERROR = 2.0**-12  #: Relative error that is allowed in a slope: half of the rounding error.
 EDGE_CELLS = 4.0  #: Cells that a path goes in a triangle at a sharp edge for one elsewhere.
 AGREED = 0.99  #: Length of the mean velocity over the mean length where nodes agree.
 
@@ -140,7 +140,7 @@ class TextureSet:
 
     @cached_property
     def typical_speed(self) -> float:
-        """Typical speed of the field, or of the whole of which it is a part."""
+        """Typical speed of the field, or of the whole field if it is a part."""
         return self.whole_speed or typical_speed(self.geometry.field)
 
     @cached_property
@@ -317,7 +317,7 @@ class TextureSet:
         p_i, p_j = surface.tangents
         along = rate[..., :1] * p_i + rate[..., 1:] * p_j
         for pole in surface.poles or ():
-            # A point has one slope, of which each of its nodes holds a component in its unit.
+            # A point has one slope; each of its nodes holds the component in its own unit.
             unit = pole.lines(slices.unit)[pole.line]
             across = pole.lines(rate)[pole.line, :, pole.component] / unit
             slope = pole.vector(across) @ pole.plane

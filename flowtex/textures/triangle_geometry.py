@@ -29,7 +29,7 @@ class TriangleGeometry(DrawnSurface):
     field: FlowField  #: The flow, with nodes (1, N).
     nodes: slice | Indices  #: Numbers of the nodes that are drawn, (n,), or all of them.
     triangles: Indices  #: Nodes at the corners of what is drawn, (m, 3), as numbers among these.
-    members: Indices  #: Numbers of these triangles among those of the field, (m,).
+    members: Indices  #: Numbers of these triangles in the field, (m,).
     whole: Surface  #: The surface that a tile is a part of, whose middle, size and frame it has.
     #: Blocks that each triangle lies in, (m,): bit b is the block at row b // C of C columns, and
     #: column b % C.
@@ -68,7 +68,7 @@ class TriangleGeometry(DrawnSurface):
 
     @property
     def drawn(self) -> tuple[slice, slice | Indices]:
-        """Index of the nodes that are drawn in arrays over those of the field, (1, N)."""
+        """Index that selects the drawn nodes in arrays over the nodes of the field, (1, N)."""
         return slice(0, 1), self.nodes
 
     texels = drawn  #: The nodes of the field that lie in the textures: those that are drawn.

@@ -7,7 +7,7 @@ costs one look-up for each node, where integration would cost as many steps as t
 A look-up between the nodes is bilinear, corrected by the mean second differences around its cell.
 Around a centre or near a separatrix long paths of neighbours part: where the change of the second
 differences in a cell is large for the slice's length, the path is continued in shorter, smooth
-pieces. The remaining error is of the order of that of the bilinear velocity. Displacements are
+pieces. The remaining error is of the order of the bilinear velocity's error. Displacements are
 complex numbers, i + j sqrt(-1), so that one gather takes both components.
 
 A flow that varies is composed only when its lags are whole numbers of its equal time steps, so that
@@ -283,7 +283,7 @@ class _SliceLookup:
         return np.asarray(np.maximum(self.grid.blend(self.unit, corners), self.unit.min()))
 
     def _base(self, step: Indices | int) -> Indices | int:
-        """Return the number, among those of all steps, of the first node of a step."""
+        """Return the number of the first node of a step, counting the nodes of all steps."""
         if self.unsteady:
             return step * self.grid.size
         return 0

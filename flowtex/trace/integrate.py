@@ -82,7 +82,7 @@ def integrate(
 
 @dataclass
 class Columns:
-    """Base of arrays whose last axis is that of the particles; some of them may be None."""
+    """Base of groups of arrays whose last axis counts particles; some of them may be None."""
 
     def joined(self, other: Self) -> Self:
         """Return these particles and others."""

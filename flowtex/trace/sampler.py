@@ -309,7 +309,7 @@ def cap(pole: Pole, grid: NodeGrid, data: list[Floats], near: int) -> Patch:
         first = pole.line
     else:
         first = pole.line - depth
-    # The second axis is that of the lines around the pole.
+    # The second axis counts the lines around the pole.
     strips = [pole.lines(a.reshape(shape), 1)[:, first : first + depth + 1] for a in data]
     strips[:2] = _to_plane(pole, strips[1 - pole.component], strips[pole.component])
     strips = [pole.lines(a, 1) for a in strips]

@@ -14,10 +14,10 @@ from flowtex._util.array_types import Bytes
 from flowtex.rendering.cpu.render import render
 from flowtex.scene.scene import Scene
 
-#: Whether Chromium draws with the WebGL that it brings, which filters with fewer digits.
+#: Whether Chromium draws with its own software WebGL, which filters with fewer digits.
 OWN = """(({ gl }) => gl.getExtension('WEBGL_debug_renderer_info') !== null
   && /SwiftShader/.test(gl.getParameter(37446)))(viewers[0].graphics)"""
-#: As many times the tolerances are, there; and with VTK, whose filters have the most digits.
+#: Factors of the tolerances in such a browser, and with VTK, whose filters have the most digits.
 COARSER, FINER = 4.5, 0.95
 
 
@@ -35,8 +35,8 @@ def agree(theirs: Bytes, name: str, more: float = 1.0) -> None:
     assert only_one <= 10
 
 
-#: Views that give the shaders, which VTK and WebGL share, another number or camera of a kind that
-#: the other views have as well: WebGL alone draws them.
+#: Views in which the shaders of VTK and WebGL only get another number or camera of a kind that
+#: other views have as well: only WebGL draws them.
 SHARED = {
     *("many samples", "levels", "one-sided", "by time"),
     *("streaklets, curved", "streaklets, near a source"),

@@ -53,7 +53,7 @@ class HandedScene:
         self._asked = 0
 
     def update(self, pane: FlowHandle, background: object, **values: object) -> Header:
-        """Replace the scene by that of a pane, or by the same in other colours.
+        """Replace the scene by the scene of a pane, or by the same scene in other colours.
 
         Return the header, with further values of the pane, and the address of the parts.
         """

@@ -75,7 +75,7 @@ class ViewPainter:
     def quick(self, share: float = 1.0) -> Bytes:
         """Return a picture as good as there is time for in motion, (h, w, 3) uint8.
 
-        ``share`` is that of the pixels that there is time for on the way to the page.
+        ``share`` is the share of the pixels for which there is time on the way to the page.
         """
         panes = self._viewport.panes
         (width, height) = self._viewport.pane_size
@@ -220,7 +220,7 @@ class FrameStream(AreaAdapter):
 
     @contextmanager
     def _log_faults(self) -> Iterator[None]:
-        """Log the error of a picture, and draw on; the page gets those of the data."""
+        """Log the error of a picture, and draw on; the page shows only errors of the data."""
         try:
             yield
         except Exception as error:

@@ -33,7 +33,7 @@ DERIVED: dict[str, Callable[[Floats], Floats]] = {
 SIGNED = frozenset(("vorticity", "divergence", "okubo_weiss"))  #: Derived scalars of both signs.
 #: Scalars for which particles are followed over a horizon, by the field; the tracer adds them.
 FOLLOWED: dict[str, Callable[[Any, float], Steps]] = {}
-#: Names such as those that other programs give to the components of a vector.
+#: Pattern of the names that other programs give to the components of a vector.
 COMPONENT = re.compile(r"[_:.\[ -][xyz012]\]?$", re.IGNORECASE)
 #: Long names that differ from the names.
 LONG_NAMES = {"okubo_weiss": "Okubo-Weiss parameter", "ftle": "FTLE"}

@@ -112,7 +112,7 @@ class NodeGradient:
     directions: Floats
     derivative: Callable[[Floats], Floats]
     poles: tuple[PointLine, ...] = ()
-    #: Normal of the surface where it is known exactly, as that of the Earth, (3, J, I).
+    #: Normal of the surface where it is known exactly, as on the Earth, (3, J, I).
     normal: Floats | None = None
 
     def with_poles(self, nodal: Floats) -> Floats:

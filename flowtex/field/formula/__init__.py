@@ -359,7 +359,7 @@ def derivative(tree: Tree, name: str) -> Tree:
 
 
 def _powers(factors: Sequence[Tree]) -> list[Tree]:
-    """Return factors of which those that repeat are powers: x*x*x is x^3."""
+    """Return factors with repeated ones joined to powers: x*x*x is x^3."""
     powers: list[Tree] = []
     for factor, count in Counter(factors).items():
         powers.append(simple("^", factor, float(count)))
@@ -434,7 +434,7 @@ class Rates:
 
     @property
     def is_known(self) -> bool:
-        """Whether the rates can be computed: not those of functions on a surface."""
+        """Whether the rates can be computed, which functions on a surface do not allow."""
         return bool(self.trees) or not self._formula.surface
 
     def at(self, places: Floats) -> Floats:

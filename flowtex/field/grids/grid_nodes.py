@@ -41,7 +41,7 @@ A = TypeVar("A", bound=AnyArray)
 SAME_LINE_EXTENT = 1e-6  #: Lines closer than this share of the extent of the mesh coincide.
 SAME_LINE_CELLS = 1e-2  #: So do lines closer than this share of the cells beside them.
 MIN_RING_LINES = 8  #: Least number of lines of a ring with a gap.
-#: Additional cost of a step to a node at right angles, over that of a step to one that agrees.
+#: Additional cost of a step to a node at right angles, relative to a step to a parallel one.
 TURN_COST = 10.0
 REST_SHARE = 1e-7  #: A vector shorter than this share of the longest has no direction.
 

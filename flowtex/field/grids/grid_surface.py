@@ -48,7 +48,7 @@ class GridSurface(NodeSurface):
         self.valid = valid
         self.periodic = periodic
         self.on_globe = on_globe
-        #: Nodes with a known position, (J, I); the others have that of the nearest one.
+        #: Nodes with a known position, (J, I); the others have the position of the nearest one.
         self.has_position = known_positions(points, valid)
         self.points = fill_blanked(points, self.has_position)
         #: Displacement by one period of index j, or i, (2, 3).

@@ -196,7 +196,7 @@ def _encode_mp4(new: WholeFile, size: Size, fps: float, quality: int) -> Encoder
 
 
 def _encode_by_pillow(new: WholeFile, size: Size, fps: float, quality: int) -> Encoder:
-    """Keep pictures on the disk until Pillow writes them, those of a GIF by one palette."""
+    """Keep pictures on the disk until Pillow writes them; those of a GIF share one palette."""
     from PIL import Image
 
     kind, plain = new.part.suffix[1:].upper(), Image.Dither.NONE

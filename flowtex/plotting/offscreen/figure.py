@@ -252,7 +252,7 @@ def dynamic_map(mesh: Any, *, clock: float = 0.0, supersampling: int = 1, **opti
         x = plot["x_range"] or (left, right)
         y = plot["y_range"] or (bottom, top)
         size = plot["width"] or FIRST_SIZE[0], plot["height"] or FIRST_SIZE[1]
-        # The pixels of a plot are the page's, of which the screen may have several.
+        # A plot counts the pixels of the page; the screen may have several for one of these.
         figure.set_dpi(USUAL_DPI * plot["scale"])
         figure.set_size_inches(size[0] / USUAL_DPI, size[1] / USUAL_DPI)
         ax.set(xlim=sorted(x), ylim=sorted(y))
@@ -334,7 +334,7 @@ class FlowImage(AxesImage):
         self._title = ""
 
     def _ends(self, ax: Any, left: float, right: float) -> tuple[float, float]:
-        """Return the ends along x: those of the map where the flow may lie at both of these."""
+        """Return the ends along x, the map's own ends where the flow may lie at both of them."""
         if not self._turn:
             return left, right
         low, high = ax.projection.x_limits

@@ -28,7 +28,7 @@ class PicturePart(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class PassArea:
-    """Pixels of the passes' textures into which those of a renderer are drawn."""
+    """Pixels of the passes' textures into which the pixels of a renderer are drawn."""
 
     corner: Ints  #: Lower left pixel of the renderer with its margin, (2,).
     size: Ints  #: Width and height with the margin, (2,).

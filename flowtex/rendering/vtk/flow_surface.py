@@ -419,7 +419,7 @@ class FlowSurface:
 
 
 class SurfaceArrows:
-    """The arrows of one surface: those of the root, drawn by the finest tile there."""
+    """The arrows of one surface: arrows of the root, drawn by the finest tile at their places."""
 
     def __init__(self, renderer: pv.Renderer, settings: Settings) -> None:
         self._renderer = weakref.ref(renderer)

@@ -266,7 +266,7 @@ class FlowLayer:
         if program is None or window is None:
             return
         self._free(window)
-        # The layer drawn just before no longer needs its texture units, of which there are few.
+        # Texture units are few, and the layer drawn just before no longer needs its own.
         if (last := _last.get(window)) is not None and (layer := last()) not in (None, self):
             layer.after_frame()
         _last[window] = weakref.ref(self)
@@ -537,7 +537,7 @@ def _corners(corners: Floats32) -> Floats32:
 def insert_text(
     actor: pv.Actor, owner: str, prefix: str, variant: frozenset[str], *, before: bool = False
 ) -> None:
-    """Insert those of our files that begin with a prefix after the marks of VTK, or before them."""
+    """Insert flowtex's files that begin with a prefix after the marks of VTK, or before them."""
     actor.clear_shader_replacements(_feature_name=owner)
     for stage, part in STAGES:
         name = f"vtk/{prefix}{stage}_{part}.glsl"

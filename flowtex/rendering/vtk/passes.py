@@ -37,8 +37,9 @@ EQUAL = 0x0202  #: OpenGL's number of the comparison of equal depths.
 ALWAYS = 0x0207  #: OpenGL's number of the comparison that is always true.
 MOST_LAYERS = 4096  #: Most layers, a power of two: their numbers are depths.
 COLOUR_AND_DEPTH = 0x4100  #: OpenGL's number of what is cleared.
-SKIPPED = 3  #: Pixels from one to the next of those in which it is looked for tiles.
-LAST = -1.0  #: Before the actors are drawn, but after all else that waits for the start of a frame.
+SKIPPED = 3  #: Distance in pixels of the samples by which the visible tiles are found.
+#: Priority of the observer: after all others of the start of a frame, before actors are drawn.
+LAST = -1.0
 
 
 class DeferredPasses:
@@ -55,19 +56,19 @@ class DeferredPasses:
         self._places = vtkRenderer()
         self._places.AutomaticLightCreationOff()
         self._alone: tuple[weakref.ref[FlowLayer], _Part, vtkRenderer] | None = None
-        #: What the next frames are a part of, unless they are whole pictures.
+        #: The whole picture, if the next frames are parts of it.
         self.part: PicturePart | None = None
         self._observed = renderer.AddObserver("StartEvent", weak_callback(self._draw), LAST)
 
     @classmethod
     def of(cls, renderer: pv.Renderer) -> DeferredPasses:
-        """Return those of a renderer."""
+        """Return the passes of a renderer, the same ones at each call."""
         if renderer not in _passes:
             _passes[renderer] = cls(renderer)
         return _passes[renderer]
 
     def show(self, owner: object, layers: list[FlowLayer]) -> None:
-        """Draw these layers of an owner in the next frames, of those that are deferred."""
+        """Draw an owner's layers in the next frames, as far as they are deferred."""
         self._hidden.discard(owner)
         self._shown[owner] = layers
 
@@ -131,7 +132,7 @@ class DeferredPasses:
         return surfaces
 
     def places(self, layer: FlowLayer) -> Floats32:
-        """Return places (N, 4) of enough pixels that are seen of a layer by itself."""
+        """Return the places (N, 4) at sampled pixels where a layer would be seen alone."""
         renderer = self._renderer()
         assert renderer is not None
         if self._alone is None or self._alone[0]() is not layer:

@@ -28,7 +28,7 @@ class Body:
     colours: Bytes  #: Red, green, blue and opacity of each, (N, 4) uint8.
     faces: Indices  #: Corners of triangles, (M, 3).
     pieces: Indices  #: Ends of pieces of lines, (L, 2); twice the same vertex is a point.
-    #: Unit normals of smooth faces, (N, 3); those of flat ones are found when they are drawn.
+    #: Unit normals of smooth faces, (N, 3); drawing computes the normals of flat faces.
     normals: Floats | None = None
     width: float = 1.0  #: Width of lines and points in pixels.
     ambient: float = 1.0  #: Shares of ambient light and of diffuse light.

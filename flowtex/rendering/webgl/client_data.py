@@ -77,7 +77,7 @@ class Colours:
     bar: bool = True  #: Whether there is a legend.
     #: Numbers and values of other scalars, sent as well where nobody can be asked later.
     others: tuple[tuple[int, Floats], ...] = ()
-    number: int = 0  #: Number of the scalar among those of the field.
+    number: int = 0  #: Number of the scalar among the scalars of the field.
     #: Scalars that a user may choose for the colours: name, label, unit, automatic range, and
     #: whether it varies.
     choices: tuple[Header, ...] = ()
@@ -88,7 +88,7 @@ class Colours:
     flat: bool = False  #: Whether the values belong to cells.
     coastlines: bool = False  #: Whether these lines are drawn on a map of the Earth.
     graticule: bool = False
-    #: Colour from 0 to 1 of what there are no data of on a map; ``None`` where it is not drawn.
+    #: Colour from 0 to 1 of places without data on a map; ``None`` where they are not drawn.
     land: tuple[float, float, float] | None = None
 
 
@@ -99,9 +99,9 @@ class ClientData:
     textures: TextureSet
     colours: Colours = data_field(default_factory=Colours)
     chosen: tuple[int, ...] = ()  #: Numbers of the times that are sent, increasing; empty for all.
-    pyramid: Pyramid | None = None  #: Tiles of a large flow, of which this is the root.
-    finest: int = 0  #: Finest level of those that are sent.
-    depth: int = 0  #: Level of the root, of which this is a tile.
+    pyramid: Pyramid | None = None  #: Tiles of a large flow, if this is its root.
+    finest: int = 0  #: Finest level that is sent.
+    depth: int = 0  #: Level of the root, if this is a tile.
     traces: bool = False  #: Whether the client receives the velocity, where it can trace it.
     bodies: Bodies | None = None  #: Other meshes.
     marks: Marks | None = None  #: Its structure.
@@ -132,7 +132,7 @@ class ClientData:
         return packing_of(self.textures)
 
     def recoloured(self, colours: Colours) -> ClientData:
-        """Return the same in other colours."""
+        """Return the same flow in other colours."""
         other = replace(self, colours=colours)
         if "packing" in vars(self):
             vars(other)["packing"] = self.packing
@@ -306,7 +306,7 @@ class ClientData:
         return parts
 
     def tile(self, textures: TextureSet, values: Callable[[str], Floats]) -> ClientData:
-        """Return the data of a tile; ``values`` returns those of a scalar at its nodes."""
+        """Return the data of a tile; ``values`` returns the values of a scalar at its nodes."""
         colours = self.colours
         colours = replace(
             colours,
@@ -323,7 +323,7 @@ class ClientData:
 
     @cached_property
     def tile_header(self) -> Header:
-        """Part of a tile's header that differs from that of the root."""
+        """Part of a tile's header that differs from the root's header."""
         return {"geometry": self._geometry(), "slices": self._slices()}
 
     def source(self, step: int) -> int:

@@ -73,7 +73,7 @@ def earth_header(geometry: DrawnSurface, *, has_land: bool) -> Header | None:
 
 
 def earth_parts(geometry: DrawnSurface, *, has_land: bool, tiled: bool) -> Parts:
-    """Return the arrays of the Earth, of which a tile has none of its own."""
+    """Return the arrays of the Earth; tiles have none of their own."""
     field = geometry.field
     if field.projection is None or geometry.whole is not field.surface:
         return {}

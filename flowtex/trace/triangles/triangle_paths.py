@@ -148,7 +148,7 @@ def begin(motion: Motion, nodes: Indices) -> tuple[Indices, Bools]:
 
 
 def _most_inward(mesh: TriangleMesh, inwards: Floats, first: Indices, last: Indices) -> Indices:
-    """Return those of corners from ``first`` to ``last`` (N,) with the most inward velocity."""
+    """Return the corners, from ``first`` to ``last`` (N,), with the most inward velocity."""
     count = last - first
     begins = np.cumsum(count) - count
     owner = np.repeat(np.arange(len(first)), count)
@@ -382,7 +382,7 @@ class _Run:
         return np.asarray(slides)
 
     def _parts(self, now: Derivatives, triangle: Indices, edge: Indices) -> Bools:
-        """Return whether velocities behind edges do not continue those that lead along them."""
+        """Return whether velocities behind edges do not continue the velocities along the edges."""
         count = np.arange(len(triangle))
         away = _three(now.first)[edge, count] * self.mesh.heights[triangle, edge]
         speed = np.sqrt(dot(now.metric, now.first, now.first))

@@ -37,7 +37,7 @@ PIECE_BLOCK = 32768
 MOST_CROSSED = 500
 #: Share of a triangle, and of a lag, by which rounding may miss it.
 ROUNDING = 1e-9
-#: Lags that stand for the reach of endless paths, so that a path ends only beside those that do.
+#: Lags that stand for the reach of endless paths, so that a path ends only beside ending paths.
 FAR = 1e4
 #: Share of a lag by which the ends of a triangle's three paths may lie apart to be interpolated.
 ENDS_SHARE = 0.25
@@ -436,7 +436,7 @@ class _Bends:
         with np.errstate(all="ignore"):
             foot = np.einsum("sec,ec->se", away, along) / np.einsum("ec,ec->e", along, along)
             height = np.linalg.norm(away - foot[..., None] * along, axis=-1)
-            #: Share of the near tip in the far one, and that of the second end.
+            #: Share of the near tip in the far one, and share of the second end.
             self._near = -height[1] / height[0]
             self._second = foot[1] - self._near * foot[0]
             #: By the smaller of the two triangles.
