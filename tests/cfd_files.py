@@ -247,6 +247,23 @@ def write_foam(path: Path, *, decomposed: bool = False) -> None:
         _foam(folder / f"{time:g}" / "U", "volVectorField", text)
 
 
+def write_wall_stress(path: Path) -> Floats:
+    """Add a stress on the walls at the last time, and no slip there; return it, (8, 3)."""
+    walls = "walls { type fixedValue; value uniform (0 0 0); }"
+    for time in TIMES:
+        file = path.parent / f"{time:g}" / "U"
+        text = file.read_text(encoding="ascii").replace("walls { type zeroGradient; }", walls)
+        file.write_text(text, encoding="ascii")
+    stress = np.stack([np.arange(1.0, 9.0), 0.5 * np.arange(8.0), np.zeros(8)], axis=1)
+    values = _listed(f"({x:g} {y:g} {z:g})" for x, y, z in stress)
+    text = "dimensions [0 2 -2 0 0 0 0];\ninternalField uniform (0 0 0);\nboundaryField {\n"
+    for name in ("inlet", "outlet"):
+        text += f"{name} {{ type calculated; value uniform (0 0 0); }}\n"
+    text += f"walls {{ type calculated; value nonuniform List<vector> {values}; }}\n}}\n"
+    _foam(path.parent / f"{TIMES[-1]:g}" / "wallShearStress", "volVectorField", text)
+    return stress
+
+
 def _foam(path: Path, kind: str, text: str) -> None:
     head = f"FoamFile {{ version 2.0; format ascii; class {kind}; object {path.name}; }}\n"
     path.write_text(f"{head}{text}\n", encoding="ascii")

@@ -166,7 +166,8 @@ class FieldConstructors:
         plane, slice, contour, periodic, sign_free, preference
             As for :meth:`from_pyvista`.
         time
-            One time of the file, drawn as a steady field. All times by default.
+            One time of the file, drawn as a steady field, or ``"first"`` or ``"last"``. Between two
+            times of a mesh the flow is interpolated. All times by default.
         block
             Number or path of the block to draw, such as ``"Base/Zone 1"``, if the file has several.
             Numbers count from 0 and include only blocks with cells.

@@ -6,7 +6,6 @@ PyVista's readers open most files; PLOT3D, which does not describe itself, is re
 
 from __future__ import annotations
 
-import math
 import os
 import re
 from collections.abc import Iterable, Iterator, Sequence
@@ -26,7 +25,7 @@ from flowtex.sources.datasets.read_datasets import read_datasets
 from flowtex.sources.datasets.values import Regions
 from flowtex.sources.inspection.inspect_file import inspect_file
 from flowtex.sources.inspection.other_programs import advice_of
-from flowtex.sources.meshes import meshio_files, parts, plot3d, separate
+from flowtex.sources.meshes import meshio_files, parts, plot3d, separate, series
 from flowtex.sources.meshes.read_meshes import choose, read_meshes
 from flowtex.sources.meshes.vectors import MeshArray, candidates, catalogue, hidden_nodes, values_of
 from flowtex.sources.notices import Record
@@ -220,24 +219,6 @@ def _path_problem(file: Path) -> str:
     return f"the file is empty; expected {_KNOWN_FORMATS}" if is_empty else ""
 
 
-def _at_time(source: Any, time: float) -> Any:
-    if isinstance(source, list):
-        for step in parts.time_steps(source):
-            if step.time == time:
-                return step.grid
-        times = [float(n) for n in range(len(source))]
-    else:
-        times = parts.times_of(source)
-        for value in times:
-            if math.isclose(value, time, rel_tol=1e-6, abs_tol=1e-12):
-                source.set_active_time_value(value)
-                return source.read()
-    listed = ", ".join(f"{t:g}" for t in times[:8]) + (", ..." if len(times) > 8 else "")
-    raise FieldError(
-        f"time is {time!r}; the file has {f'the times {listed}' if times else 'no times'}"
-    )
-
-
 def read_files(
     path: str | Path | Sequence[str | Path],
     options: FieldOptions,
@@ -274,17 +255,18 @@ def read_files(
         raise FieldError(problem)
     if options.times is not None:
         raise FieldError("times is given, but the file already has times; omit it")
-    if isinstance(time, str):
-        raise FieldError(f"time is {time!r}; expected a number, one of the times of the file")
     opened = open_file(file)
     if opened.problem:
         raise FieldError(opened.problem)
-    source = opened.source
-    if time is not None:
-        source, options = _at_time(source, time), replace(options, times=[time])
     if options.vectors is None:
         options = replace(options, vectors=opened.velocity)
-    return read_meshes(source, options, name=file.stem)
+    if time is None:
+        return read_meshes(opened.source, options, name=file.stem)
+    source, moment = series.around(opened.source, time, options)
+    arrays = read_meshes(source, options, name=file.stem)
+    if len(series.times_of(source)) > 1:
+        return series.interpolated(arrays, moment)
+    return arrays
 
 
 def one_path(path: str | Path | Sequence[str | Path]) -> Path:

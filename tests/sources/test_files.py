@@ -104,8 +104,8 @@ def test_a_series_and_one_time_of_it(tmp_path: Path) -> None:
 
 def test_a_time_that_is_not_there(tmp_path: Path) -> None:
     path = series(tmp_path)
-    with says(f"{path}: time is 0.7; the file has the times 0.5, 1, 2"):
-        FlowField.from_file(path, time=0.7)
+    with says(f"{path}: time is 7; the file has the times 0.5, 1, 2"):
+        FlowField.from_file(path, time=7)
     flowing().save(tmp_path / "flow.vts")
     with says(f"{tmp_path / 'flow.vts'}: time is 0.7; the file has no times"):
         FlowField.from_file(tmp_path / "flow.vts", time=0.7)

@@ -23,7 +23,7 @@ from flowtex.field.field_arrays import NOTABLE_SHARE, GridArrays, TriangleArrays
 from flowtex.field.folds import MOST_NODES
 from flowtex.field.grids.grid_surface import GridSurface
 from flowtex.field.options import OF_EARTH, FieldOptions
-from flowtex.sources.meshes import parts, volume
+from flowtex.sources.meshes import parts, series, volume
 from flowtex.sources.meshes.cuts import Cut, check_cut, contour_of, slice_of, surface_sheet
 from flowtex.sources.meshes.turned_vectors import MeshVelocity
 from flowtex.sources.meshes.vectors import (
@@ -67,7 +67,12 @@ def read_meshes(mesh: Any, options: FieldOptions, *, name: str = "") -> GridArra
     if (preference := options.preference or "point") not in ("point", "cell"):
         raise FieldError(f'preference is {preference!r}; expected "point" or "cell"')
     cut = _cut_of(options)
-    steps = parts.time_steps(mesh, options.block, cut=cut is not None, record=record)
+    is_cut = cut is not None
+    vectors = options.vectors
+    if vectors is None and not is_cut:
+        vectors = series.wall_stress(parts.time_steps(mesh, options.block), record)
+    steps = parts.time_steps(mesh, options.block, cut=is_cut, record=record)
+    steps = series.having(steps, vectors, record)
     first = next(steps)
     on_grid = parts.is_structured(first.grid) and cut is None
     refused = {"plane": plane, "periodic": periodic, "sign_free": sign_free or None}
@@ -76,7 +81,7 @@ def read_meshes(mesh: Any, options: FieldOptions, *, name: str = "") -> GridArra
             f"{', '.join(given)} applies to structured meshes, and this one is not; omit it, or "
             'cut a volume as in slice="x=0.5"'
         )
-    stored, chosen = choose(first.grid, options.vectors, plane, cut, record)
+    stored, chosen = choose(first.grid, vectors, plane, cut, record)
     read_as = MeshVelocity.of(stored, options.components, record)
     velocity = read_as.drawn
     is_plain = periodic is None and not sign_free

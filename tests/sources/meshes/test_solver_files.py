@@ -9,7 +9,16 @@ from pathlib import Path
 import numpy as np
 import pytest
 import pyvista as pv
-from cfd_files import CGNS, TIMES, box, turning, write_ensight, write_exodus, write_foam
+from cfd_files import (
+    CGNS,
+    TIMES,
+    box,
+    turning,
+    write_ensight,
+    write_exodus,
+    write_foam,
+    write_wall_stress,
+)
 
 from flowtex import FlowField
 from flowtex.errors import FieldError, Notice
@@ -84,6 +93,12 @@ def test_parts_of_ensight(tmp_path: Path) -> None:
     assert np.allclose(field.velocity[1], turning(BODY, 2.0)[1])
     again = FlowField.from_file(path, block=1, plane="k=1", vectors="u,v,w", time=1)
     assert np.array_equal(again.velocity[0], field.velocity[1])
+    between = FlowField.from_file(path, block=1, plane="k=1", vectors="velocity", time=0.625)
+    assert between.steady and between.times.tolist() == [0.625]
+    assert np.allclose(between.velocity[0], turning(BODY, 1.25)[1])
+    assert "interpolated between the times 0.5 and 1" in between.reading.of("align")
+    last = FlowField.from_file(path, block=1, plane="k=1", vectors="velocity", time="last")
+    assert np.array_equal(last.velocity[0], field.velocity[1])
     summary = describe(path)
     assert summary.times == TIMES
     assert [block.name for block in summary.blocks] == ["wing tip", "body"]
@@ -168,6 +183,44 @@ def test_openfoam_tells_its_patches_and_times(tmp_path: Path) -> None:
     assert FlowField.from_file(path, block="boundary/walls").triangles is not None
     source = MeshSource.from_file(path)
     assert source.blocks[0] == "internalMesh" and "boundary/walls" in source.blocks
+
+
+def test_wall_stress_that_the_first_time_lacks(tmp_path: Path) -> None:
+    path = tmp_path / "case.foam"
+    write_foam(path)
+    stress = write_wall_stress(path)
+    walls = "boundary/walls"
+    with pytest.warns(Notice) as caught:
+        field = FlowField.from_file(path, block=walls)
+    assert [str(notice.message) for notice in caught[:2]] == [
+        '"U" is zero on this wall, so "wallShearStress" is drawn; to draw the other one, '
+        'vectors="U"',
+        "time 0.5: left out, as they have no array 'wallShearStress'",
+    ]
+    assert field.times.tolist() == [1.0]
+    # The mean of the faces around each node, as PyVista computes it.
+    reader = pv.get_reader(str(path))
+    reader.set_active_time_value(1.0)
+    mesh = reader.read()["boundary"]["walls"]
+    mesh.clear_point_data()
+    assert np.allclose(mesh.cell_data["wallShearStress"], stress)
+    means = mesh.cell_data_to_point_data()
+    places = field.points.reshape(-1, 3)
+    at = [int(means.find_closest_point(point.tolist())) for point in places]
+    expected = np.asarray(means["wallShearStress"])[at]
+    assert field.vectors == "wallShearStress"
+    assert np.allclose(field.velocity[0].reshape(-1, 3), expected, atol=1e-6)
+    with says(f"{path}: time is 0.5; 'wallShearStress' has the times 1"):
+        FlowField.from_file(path, block=walls, vectors="wallShearStress", time=0.5)
+    with pytest.warns(UserWarning, match="^The velocity is zero at every node"):
+        field = FlowField.from_file(path, block=walls, vectors="U")
+    assert field.times.tolist() == list(TIMES)
+    with says(
+        f"{path}: vectors is 'V'; expected one of: U, U. The arrays of the mesh, with their "
+        "numbers of components: U (points, 3), U (cells, 3); other times have wallShearStress "
+        "(points, 3) at time 1, wallShearStress (cells, 3) at time 1"
+    ):
+        FlowField.from_file(path, block=walls, vectors="V")
 
 
 def test_openfoam_in_the_pieces_of_a_parallel_run(tmp_path: Path) -> None:
