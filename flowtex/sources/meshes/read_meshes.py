@@ -67,12 +67,7 @@ def read_meshes(mesh: Any, options: FieldOptions, *, name: str = "") -> GridArra
     if (preference := options.preference or "point") not in ("point", "cell"):
         raise FieldError(f'preference is {preference!r}; expected "point" or "cell"')
     cut = _cut_of(options)
-    is_cut = cut is not None
-    vectors = options.vectors
-    if vectors is None and not is_cut:
-        vectors = series.wall_stress(parts.time_steps(mesh, options.block), record)
-    steps = parts.time_steps(mesh, options.block, cut=is_cut, record=record)
-    steps = series.having(steps, vectors, record)
+    vectors, steps = series.with_velocity(mesh, options, record)
     first = next(steps)
     on_grid = parts.is_structured(first.grid) and cut is None
     refused = {"plane": plane, "periodic": periodic, "sign_free": sign_free or None}

@@ -85,6 +85,22 @@ def examined(reader: Any) -> Any:
     return SomeTimes(reader, [times[number] for number in numbers])
 
 
+def with_velocity(
+    source: Any, options: FieldOptions, record: Record
+) -> tuple[str | None, Iterator[TimeStep]]:
+    """Return the name of the velocity, if it is known, and the steps that have it."""
+    vectors = options.vectors
+    if vectors is None and not is_cut(options):
+        vectors = wall_stress(parts.time_steps(source, options.block), record)
+    steps = parts.time_steps(source, options.block, cut=is_cut(options), record=record)
+    return vectors, having(steps, vectors, record)
+
+
+def is_cut(options: FieldOptions) -> bool:
+    """Return whether a volume is cut."""
+    return options.slice is not None or options.contour is not None
+
+
 def wall_stress(steps: Iterator[TimeStep], record: Record) -> str | None:
     """Return the name of the stress on a surface where the velocity is always zero, if any."""
     for step in steps:
@@ -188,13 +204,12 @@ def around(source: Any, time: float | str, options: FieldOptions) -> tuple[Any, 
     """
     moment, chosen = _bracket(time, times_of(source), "the file has")
     part = limited(source, chosen)
-    is_cut = options.slice is not None or options.contour is not None
 
     def steps_of(some: Any) -> Iterator[TimeStep]:
-        return parts.time_steps(some, options.block, cut=is_cut)
+        return parts.time_steps(some, options.block, cut=is_cut(options))
 
     vectors = options.vectors
-    if vectors is None and not is_cut:
+    if vectors is None and not is_cut(options):
         vectors = wall_stress(chain(steps_of(part), steps_of(source)), Record())
     if vectors is None or all(_has(step.grid, vectors) for step in steps_of(part)):
         return part, moment
