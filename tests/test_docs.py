@@ -177,6 +177,7 @@ def close_all(names: dict[str, Any]) -> None:
 @pytest.mark.filterwarnings("ignore:FTLE is blank at")
 @pytest.mark.filterwarnings("ignore:a picture of .* has no room")
 @pytest.mark.filterwarnings("ignore:.* points joined by .* triangles")
+@pytest.mark.filterwarnings("ignore:the velocity is the difference of positions in time")
 @pytest.mark.parametrize("page", [p for p in PAGES if blocks(p)], ids=lambda p: p.stem)
 def test_the_blocks_of_a_page_run(
     page: Path,

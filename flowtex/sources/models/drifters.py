@@ -64,7 +64,7 @@ def as_points(ds: xr.Dataset, choice: Choice, record: Record) -> xr.Dataset:
             'df.lon.round()])[["u", "v"]].mean())'
         )
     text = f"{count:,} of {tracks.count:,} trajectories have a position at {when}{others}"
-    record("select", text, notable=True)
+    record("select", text, notable=bool(others))
     return _dataset(points, tracks, time, record)
 
 
