@@ -106,7 +106,7 @@ def checked_bar_options(options: Mapping[str, Any] | None) -> dict[str, Any]:
 
 
 def first_arguments(options: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the arguments of users with which PyVista makes a bar."""
+    """Return the arguments with which PyVista makes a bar: the user's ones, else defaults."""
     if is_vertical(options):
         place = VERTICAL
     else:

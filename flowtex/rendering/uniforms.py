@@ -267,6 +267,7 @@ def _noise_origin(focus: Floats, finest: float, anchor: Floats) -> Values:
 
 
 def _image(image: ImageTextures, settings: Settings, density: float) -> Values:
+    """Return the uniforms of an image that is drawn in place of noise, by name."""
     height = image.step.shape[0] * density
     width = image.step.shape[1] * density
     rows = image.texels.shape[0] * density * settings.tiles

@@ -30,9 +30,14 @@ class TakesArrays(Protocol[P, Returned]):
 def takes_arrays(
     first: int = 0,
 ) -> Callable[[Callable[P, Result]], TakesArrays[P, Result]]:
-    """Let a function take arrays in place of its argument ``mesh``, which has this number.
+    """Return a decorator for functions that take arrays in place of their argument ``mesh``.
 
-    They become one argument, a tuple, which :func:`flowtex.scene.fields.read_field` reads.
+    The arrays become one argument, a tuple, which :func:`flowtex.scene.fields.read_field` reads.
+
+    Parameters
+    ----------
+    first
+        Position of ``mesh`` among the arguments, from 0.
     """
     decorate: Any = joins_arrays(first)
     return cast("Callable[[Callable[P, Result]], TakesArrays[P, Result]]", decorate)

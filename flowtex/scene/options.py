@@ -225,6 +225,8 @@ LIVE = tuple(name for name in Appearance.__dataclass_fields__ if name != "image"
 
 
 def _attribute(name: str) -> property:
+    """Return a property that reads and changes a field of the appearance of ``self.scene``."""
+
     def get(self: AppearanceAttributes) -> Any:
         return getattr(self.scene.appearance, name)
 

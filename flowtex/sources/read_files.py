@@ -134,7 +134,7 @@ _KNOWN_FORMATS = (
     ".foam, .xdmf and more) or meshio (.msh, .med and more), PLOT3D (.xyz with .q beside it), or a "
     "dataset or table (.nc, .zarr, .grib, .json, .geojson, .csv, .txt, .vec)"
 )
-#: A URL of which ``pathlib`` has made a path; one letter is a drive.
+#: A URL that ``pathlib`` has turned into a path; one letter is a drive.
 _ADDRESS = re.compile(r"[A-Za-z][A-Za-z0-9+.-]+:[/\\]")
 
 
@@ -342,7 +342,7 @@ def _files(path: Path, depth: int) -> Iterator[Path]:
 
 
 class ArraySummary(NamedTuple):
-    """One array, its finite range, that of lengths for a vector, and its components' names."""
+    """One array, its finite range (for a vector, of its lengths), and its components' names."""
 
     name: str
     where: Literal["points", "cells"]

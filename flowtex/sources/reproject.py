@@ -1,4 +1,4 @@
-"""A field of the Earth on another map: its nodes and vectors are those of its own map."""
+"""Put a field of the Earth, with the nodes and vectors of its own map, on another map."""
 
 from __future__ import annotations
 

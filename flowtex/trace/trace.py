@@ -331,7 +331,16 @@ class _Tracing:
     def follow(
         self, directions: Sequence[float], landing: Indices | None
     ) -> dict[float, SideSlices]:
-        """Follow all paths, by composition where there are landings."""
+        """Return the slices of all paths by direction.
+
+        Parameters
+        ----------
+        directions
+            1 for where particles go, -1 for where they came from.
+        landing
+            What :func:`landings` returns; from it the paths at long lags are composed of shorter
+            ones. ``None`` to integrate all paths.
+        """
         if landing is None:
             direct = len(self.lags)
         else:

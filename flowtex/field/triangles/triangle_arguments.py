@@ -135,7 +135,7 @@ def _row_means(step: Floats, summed: Callable[[Floats], Floats]) -> Floats:
 
 
 def _placed(p: Floats, corners: Indices, pairs: Indices, ok: Bools, *, on_globe: bool) -> _Placed:
-    """Join given nodes (N,) at one place, and pairs of them, but not those of two faces."""
+    """Join given nodes (N,) at one place, and pairs of them, unless they belong to two faces."""
     same = merged_nodes(p, corners, pairs)
     is_joined = same != np.arange(len(p))
     kept = ~is_joined[corners].any(axis=1)

@@ -38,7 +38,7 @@ class CellPath:
         edge = smoothstep(const.ALONG_PLANE, const.OFF_PLANE, sine_off)
         cells = reach * rate / speed / (1 + (const.EDGE_CELLS - 1) * edge)
         far = smoothstep(const.NEAR_CELLS, const.FAR_CELLS, cells)
-        #: Share of these paths in those of the fragments, (N,).
+        #: Share with which these paths are mixed into the paths of the fragments, (N,).
         self.share = np.maximum(1 - smoothstep(const.PARTING, const.AGREED, agreed), edge)
         self.share *= 1 - far
         self._near = np.flatnonzero(self.share)

@@ -25,7 +25,7 @@ def shade(colour: ArrayLike, value: Floats, settings: Settings) -> Floats:
 
 
 def mean_colours(table: Bytes, settings: Settings) -> Bytes:
-    """Colours that a picture has on average where a map has those of a table, (N, 4)."""
+    """Mean colours of a picture where the colour map has the colours of a table, (N, 4)."""
     if settings.noise == "image":
         return table
     shaded = table.copy()

@@ -81,7 +81,7 @@ def weight(side: float, t: float | Floats, parting: Floats, values: Values) -> F
 
 
 def shared(apart: Floats, near: Floats) -> Floats:
-    """Variance of a sum over that of independent samples, ``apart`` grains, weights ``near``."""
+    """Variance of a sum, relative to independent samples; ``apart`` in grains, weights ``near``."""
     total = np.ones(np.broadcast_shapes(np.shape(apart), np.shape(near)))
     for m in range(1, const.SHARED_TERMS + 1):
         d = m * m * np.square(apart)

@@ -544,6 +544,7 @@ class _Arrows:
         return mesh
 
     def _write_text(self) -> None:
+        """Give the actor the shader text for its present variant, if that has changed."""
         textures = self.layer.textures
         near = is_near(textures, self._settings, self.layer.view)
         # In triangles only fragments have the data to follow the velocity in a cell.

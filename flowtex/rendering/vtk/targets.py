@@ -101,7 +101,19 @@ class Rectangle:
         box: Box | None = None,
         depth: float = 0.0,
     ) -> None:
-        """Draw first and end of columns and rows of a target, or all, at a depth from 0 to 1."""
+        """Run the program once for each pixel of a target.
+
+        Parameters
+        ----------
+        target
+            The textures into which the program draws.
+        window
+            The window that has the OpenGL context.
+        box
+            Pixels to draw: first and end of columns and rows; all by default.
+        depth
+            Depth of the rectangle from 0 to 1, for the depth test.
+        """
         width, height = target.size
         self.program.SetUniformf("u_depth", 2 * depth - 1)
         target.frame.StartNonOrtho(width, height)

@@ -84,17 +84,17 @@ class Choice:
 
 
 class Axis(NamedTuple):
-    """An axis beside those of the surface, and what is drawn along it."""
+    """An axis that is not one of the surface's, and the labels that are drawn along it."""
 
     kind: str  #: ``"time"``, ``"level"``, or the name of another axis.
     dim: str
     line: AnyArray | None  #: Its labels; ``None`` where it has none.
-    drawn: int | list[int]  #: Number of the label that is drawn, or those of a series.
+    drawn: int | list[int]  #: Number of the label that is drawn, or the numbers of a series.
 
 
 @dataclass(frozen=True)
 class Drawn:
-    """What is drawn of a velocity along all axes beside those of the surface."""
+    """The selection of a velocity along all axes that are not axes of the surface."""
 
     axes: tuple[Axis, ...] = ()
     times: AnyArray | None = None  #: Dates or numbers, one for each step; ``None`` if unknown.
@@ -141,7 +141,7 @@ class Drawn:
 
 
 def _same_labels(array: xr.DataArray, dim: str, axis: Axis) -> int | list[int]:
-    """Return the numbers of the drawn labels of an axis along that of another variable."""
+    """Return where the drawn labels of an axis are along the same axis of another variable."""
     own, count = line_of(array, dim), array.sizes[dim]
     length = count if axis.line is None else len(axis.line)
     if own is None or axis.line is None:

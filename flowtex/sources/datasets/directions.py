@@ -29,7 +29,7 @@ ANGULAR = (ANGLE, FROM, TOWARDS)
 
 #: Names of directions.
 TURNS = re.compile(r"(^|_)(direction|dir)(_\w+)?$|^w(d|dir)\w*$|^dir\w*$", re.I)
-#: Names of angles, beside those of directions.
+#: Names of angles that are not names of directions.
 ANGLES = re.compile(r"^(angle|phase|arg|argument|phi|theta)(_?\d*|_\w+)$|_angle$", re.I)
 #: Words for angles from x or from east.
 FROM_X = re.compile(

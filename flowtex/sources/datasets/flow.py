@@ -86,7 +86,7 @@ MOST_RADIANS = 2 * np.pi + 1e-3
 UNKNOWN = "a curvilinear grid, and no name that tells"
 #: Sine of the angle between rows and parallels from which on the directions matter.
 NOTABLE_TURN = 0.02
-#: Share of nodes at rest from which on those of a staggered grid count as land.
+#: Share of nodes at rest from which on resting nodes of a staggered grid count as land.
 LAND_SHARE = 0.01
 #: Share of the moving nodes up to which a mask leaves none.
 MOST_LEFT = 0.02
@@ -245,7 +245,7 @@ class Flow:
     mesh: Mesh | None = None
     staggered: bool = False
     mean: Callable[[int], Floats] | None = None  #: Of the members of an ensemble.
-    members: tuple[Flow, ...] = ()  #: These, of which this is the mean.
+    members: tuple[Flow, ...] = ()  #: The members of an ensemble, if this is their mean.
     member_dim: str = ""  #: Dimension of the members.
 
     @property

@@ -48,7 +48,7 @@ def match(one: AnyArray, other: AnyArray, period: float | None = None) -> Match:
 
 
 def is_between(one: Floats, other: Floats, period: float | None = None) -> bool:
-    """Return whether the labels of one axis are in the middle between those of another."""
+    """Return whether the labels of one axis are midway between the labels of another."""
     if min(len(one), len(other)) < 2:
         return False
     distance, _ = _nearest(one, other, period)

@@ -166,7 +166,7 @@ def _mask(array: xr.DataArray, name: str, *, is_flag: bool, is_wanted: bool) -> 
 
 
 def moves_over_land(array: xr.DataArray) -> bool:
-    """Return whether a velocity is that of air, by its names."""
+    """Return whether a velocity is the velocity of air, by its names."""
     words = str(array.attrs.get("standard_name", "")) or str(array.attrs.get("long_name", ""))
     if "water" in words or "current" in words.lower():
         return False

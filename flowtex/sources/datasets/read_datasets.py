@@ -353,7 +353,7 @@ def _member(flow: Flow) -> Flow:
 
 
 def _reader(flow: Flow, array: xr.DataArray, part: xr.DataArray) -> Callable[[int], Floats]:
-    """Return the reader of the steps of a variable; of an ensemble that of their means."""
+    """Return the reader of the steps of a variable, or of the means of an ensemble."""
     if flow.member_dim not in array.dims:
         return partial(_scalar_step, flow, part)
     parts = [member.beside(array) for member in flow.members]

@@ -77,7 +77,7 @@ class Component:
     """A variable of the velocity, ([time], J, I) or ([time], N), and its valid values."""
 
     variable: xr.Variable
-    factor: float  #: From its unit to that of the first component, or to radians.
+    factor: float  #: From its unit to the first component's unit, or to radians.
     valid: tuple[float, float] | None = None
     #: Values that mean missing data, though no attribute names them; ``None`` draws all values.
     fills: tuple[float, ...] | None = ()
@@ -217,12 +217,12 @@ class Regions:
     words: Mapping[str, Any]  #: Names, units and times, as arguments of a :class:`FlowField`.
     lines: NodeLines  #: Places of the nodes.
     values: Values  #: The velocity.
-    factor: float  #: From its unit to that of length and time.
+    factor: float  #: From its unit to the units of length and time.
     scalars: Mapping[str, xr.Variable]
 
     @property
     def names(self) -> tuple[str, ...]:
-        """Names of the scalars, that of the speed on the Earth among them."""
+        """Names of the scalars, among them the speed on the Earth."""
         projection = self.lines.projection
         drawn = projection is not None and not projection.is_globe
         return (*self.scalars, "speed") if drawn else tuple(self.scalars)

@@ -26,7 +26,7 @@ KINDS = {
 #: Types of counts and of numbers of corners.
 WHOLE = ("i1", "u1", "i2", "u2", "i4", "u4")
 ORDERS = {b"ascii": "", b"binary_little_endian": "<", b"binary_big_endian": ">"}
-#: Most bytes of a header, and of a line of text, of which VTK reads no more.
+#: Most bytes of a header, and of a line of text: VTK reads no more.
 MOST_HEADER_BYTES = 100_000
 MOST_LINE_BYTES = 4_095
 #: Names of the list of corners of a face.
@@ -38,7 +38,7 @@ REMEDY = "write or copy it again"
 
 @dataclass
 class _Element:
-    """Points or faces: how many, and the type of each property; of lists also that of the count."""
+    """Points or faces: how many, and the type of each property, of lists also the count's type."""
 
     name: str
     count: int

@@ -328,7 +328,7 @@ class _Appended(Exception):
 
 
 class _Block:
-    """The bytes of one array, after a header with their number, or those of compressed blocks."""
+    """The bytes of one array or of its compressed blocks, after a header with their number."""
 
     def __init__(
         self, data: Data, document: _Document, place: tuple[int, int, bool], what: str

@@ -155,7 +155,7 @@ def _configuration(entry: Any) -> dict[str, Any]:
 
 
 def _check_sizes(node: dict[str, Any], name: str) -> None:
-    """Raise a FieldError for a shape, or that of a chunk, that is no list of whole numbers.
+    """Raise a FieldError for a shape, or a chunk's shape, that is no list of whole numbers.
 
     Zarr takes ``true`` for 1, and divides by the sides of chunks.
     """

@@ -17,7 +17,7 @@ from flowtex.errors import FieldError
 
 #: Least number of points of cells of any length, by the number of their type.
 LEAST = {2: 1, 4: 2, 6: 3, 7: 3, 36: 6, 41: 1, 42: 4}
-#: First type of which the order, and so the number of points, is free.
+#: First type whose order, and so the number of points, is free.
 FIRST_HIGHER_ORDER = 68
 #: Kinds of cells of a surface, and the least number of points of each.
 KINDS = {"Verts": 1, "Lines": 2, "Polys": 3, "Strips": 3}

@@ -185,7 +185,7 @@ def surface_sheet(mesh: Any, cut: Cut | None, velocity: MeshArray, record: Recor
     points = np.asarray(surface.points, dtype=np.float64)
     origin: Indices | slice = slice(None)
     if velocity.where == "cells" and cut is None:
-        # Means of cells are those of one face.
+        # A mean over cells must belong to one face.
         triangles, origin = split_nodes(points, triangles)
         points = points[origin]
 

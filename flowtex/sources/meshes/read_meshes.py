@@ -198,7 +198,7 @@ def _stacked(
 def _scalars(
     sheet: Sheet, preference: str, velocity: MeshArray
 ) -> tuple[dict[str, Floats], dict[str, Floats]]:
-    """Return the scalars at the nodes, and those of the cells; a name is in one of them.
+    """Return the scalars at the nodes, and the scalars of the cells; a name is in one of them.
 
     Components of other vectors than the velocity are among them.
     """

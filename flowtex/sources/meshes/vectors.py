@@ -150,7 +150,7 @@ def candidates(mesh: pv.DataSet) -> list[MeshArray]:
         if array.real and array.components in (2, 3)
         if array.name not in others and not NO_VELOCITY.fullmatch(array.name)
     ]
-    # Of arrays on points and cells one was computed from the other: those of points come first.
+    # If both points and cells have an array, one was computed from the other: prefer points.
     by_name = {array.name: array for array in reversed(arrays)}
     return [array for array in arrays if by_name[array.name] is array] or _component_vectors(mesh)
 
@@ -323,7 +323,7 @@ def _parses(name: str) -> Iterator[tuple[str, str, str]]:
 
 
 def _stem(before: str, after: str) -> str:
-    """Return the name of a vector: that of a component without its letter and its unit."""
+    """Return the name of a vector: the name of a component without its letter and its unit."""
     return (before + _UNIT.sub("", after)).strip(_EDGES)
 
 

@@ -173,7 +173,7 @@ def _renamed(ds: xr.Dataset, mesh: Mesh) -> xr.Dataset:
 
 
 def _completed(ds: xr.Dataset) -> xr.Dataset:
-    """Return a dataset of TUFLOW FV or TELEMAC in the form of those of other models."""
+    """Return a dataset of TUFLOW FV or TELEMAC in the form of other models."""
     if (faces := ds.attrs.get(TELEMAC)) is not None:
         ds = ds.assign({TELEMAC: ((f"{TELEMAC}_faces", f"{TELEMAC}_corners"), np.asarray(faces))})
         for name, (words, unit) in dict(ds.attrs.get("variables", {})).items():

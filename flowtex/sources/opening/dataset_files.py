@@ -70,7 +70,7 @@ class Datasets(list["xr.Dataset"]):
     ) -> None:
         super().__init__(items)
         self.closers, self.recognised = tuple(closers), recognised
-        #: Names of axes of which a choice was used when the datasets were opened.
+        #: Names of axes along which a choice was used when the datasets were opened.
         self.used: set[str] = set()
 
     def close(self) -> None:

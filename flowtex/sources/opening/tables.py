@@ -50,7 +50,7 @@ MOST_PLACES = 4
 FEWEST_CELLS = 0.4
 #: Share of the points that must have values, over all times.
 FEWEST_ROWS = 0.5
-#: Share of identities whose positions move, below which they are those of stations.
+#: Share of identities with moving positions below which identities are stations.
 FEWEST_MOVING = 0.5
 #: Most bytes in memory for one byte of text: in JSON each "[]," is a list.
 TEXT_GROWTH = 24
@@ -89,7 +89,7 @@ def as_dataset(item: Any, *, several: bool) -> xr.Dataset:
 
 
 def _read_text(stream: io.StringIO) -> xr.Dataset:
-    """Read columns as those of a file."""
+    """Read columns as from a file."""
     temporary = TemporaryFolder()
     try:
         path = temporary.new_folder() / "table.csv"

@@ -31,13 +31,13 @@ from flowtex.field.triangles.triangle_surface import TriangleSurface
 
 #: Side of the first bins in edges there.
 FIRST_EDGES = 2.0
-#: Passes in which the edge of a node becomes that of its surroundings.
+#: Passes in which the edge of a node takes the value of its surroundings.
 SMOOTHING = 3
 #: Rounds of the search for inverted triangles.
 UNTANGLING = 4
 #: Most bins along the surface's extent; three of their numbers fit into 64 bits.
 MOST_BINS = 2**18
-#: Most nodes of the next level as a share of those of a level that is not the last.
+#: Most nodes of the next level, as a share of the nodes of a level that is not the last.
 MOST_LEFT = 0.7
 
 

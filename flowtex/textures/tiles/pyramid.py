@@ -155,7 +155,7 @@ class Pyramid:
         return SurfaceGeometry.of(self.root)
 
     def root_textures(self, store: SliceStore) -> TextureSet:
-        """Return the textures of the root, whose traces are those of a store of slices."""
+        """Return the textures of the root, with the traces of a store of slices."""
         return TextureSet(self.root_geometry, store)
 
     def at_level(self, level: int) -> FlowField:

@@ -59,7 +59,7 @@ def shared_pyramid(field: FlowField, parameter: str, lines: str = "pathlines") -
 
 
 def ends_of(values: Floats, *, robust: bool) -> tuple[float, float] | None:
-    """Return the least and the greatest finite value, or those of a robust range."""
+    """Return the least and the greatest finite value, or the ends of a robust range."""
     values = values[np.isfinite(values)]
     if not values.size:
         return None

@@ -42,7 +42,7 @@ MOST_LAGS = 24
 BIN_SHARE = 1 / 3
 #: Greatest factor by which cells, which are large already, may be larger where a level is smooth.
 SMOOTH_CELLS = 2.0
-#: Share of the triangles of a block whose size counts as that of all.
+#: Quantile of the sizes of the triangles of a block that counts as the size of all.
 MOST_SHARE = 0.95
 #: Most nodes of a window for each of its tile with composed paths: composing follows all of them.
 MOST_AROUND = 2.0

@@ -128,7 +128,7 @@ class CriticalPoints(UserList[CriticalPoint]):
         Parameters
         ----------
         kinds
-            One or more of :data:`KINDS`, such as ``"saddle"``.
+            One or more kinds, such as ``"saddle"`` or ``"spiral sink"``.
 
         Raises
         ------
