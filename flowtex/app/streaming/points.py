@@ -77,6 +77,7 @@ class PointReader:
         return read
 
     def _mark(self, pane: FlowHandle, position: Sequence[float]) -> dict[str, str]:
+        """Return the kind of a drawn critical point near a position, as ``mark``, or nothing."""
         scene = pane.scene
         if not (count := scene.settings.critical_points):
             return {}

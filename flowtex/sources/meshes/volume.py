@@ -95,7 +95,12 @@ class VolumeValues:
         self._steps.setdefault(name, []).append(sample)
 
     def _sample(self, grid: Any, array: MeshArray, part: Slice | Plane | int | None) -> Floats:
-        """Return values of an array, or of a component or the part in planes of vectors."""
+        """Return a sample of the finite, visible values of an array in a mesh, and their ends.
+
+        Of vectors these are the values of a component if ``part`` is its number, and lengths
+        otherwise: of the part in a plane if ``part`` is a cut, else of the whole. The result has at
+        most as many values as this object keeps, and the two ends, (S,).
+        """
         values, most = vectors.values_of(grid, array), np.float64(MAGNITUDES[1])
         if isinstance(part, int):
             values = values[:, part]
