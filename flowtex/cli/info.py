@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Annotated
 
 from flowtex._util.terminal import terminal
@@ -37,7 +37,6 @@ def info(*files: FILE, flow: Annotated[FieldFlags | None, FLAT] = None) -> int:
     from flowtex.pyramid.places import is_remote, place_text
     from flowtex.pyramid.source import has_parts
     from flowtex.sources.opening.dataset_files import dataset_paths
-    from flowtex.sources.read_files import describe, one_path
 
     if not files:
         raise UsageError("no input file; usage: flowtex info FILE")
@@ -45,21 +44,20 @@ def info(*files: FILE, flow: Annotated[FieldFlags | None, FLAT] = None) -> int:
     name = str(files[0])
     problem = ""
     tables = list[Table]()
-    has_reading = False
+    paths = None
     if len(files) == 1 and has_parts(files[0]):
         if is_remote(files[0]):
             name = place_text(files[0])
-        tables = [_store_table(files[0])] if is_store(files[0]) else []
-    elif paths := dataset_paths(files):
-        name += f" and {len(files) - 1} more" if len(files) > 1 else ""
-        has_reading = True
-        tables = [_recognised_table(paths)]
+        if is_store(files[0]):
+            tables.append(_store_table(files[0]))
     else:
-        file = files[0] if len(files) == 1 else one_path(files)
-        summary = describe(file, options.get("block"))
-        name, problem, tables = str(file), summary.problem, [_file_table(summary)]
-        tables += [_block_table(summary)] if summary.blocks else []
-        tables += [_array_table(summary)] if summary.arrays else []
+        paths = dataset_paths(files)
+        if paths:
+            if len(files) > 1:
+                name += f" and {len(files) - 1} more"
+            tables.append(_recognised_table(paths))
+        else:
+            name, problem, tables = _mesh_tables(files, options.get("block"))
     console = terminal()
     console.print(Text(name, "bold"), soft_wrap=True)
     for table in tables:
@@ -67,8 +65,25 @@ def info(*files: FILE, flow: Annotated[FieldFlags | None, FLAT] = None) -> int:
     if problem and not options:
         console.print(Text(f"To draw it: {problem}", "yellow"))
     else:
-        console.print(_field_table(load_field(files, options), has_reading=has_reading))
+        field = load_field(files, options)
+        console.print(_field_table(field, has_reading=bool(paths)))
     return 0
+
+
+def _mesh_tables(files: Sequence[Path], block: str | None) -> tuple[str, str, list[Table]]:
+    """Return the name of a file with a mesh, what prevents drawing it, and its tables."""
+    from flowtex.sources.read_files import describe, one_path
+
+    file = files[0]
+    if len(files) > 1:
+        file = one_path(files)
+    summary = describe(file, block)
+    tables = [_file_table(summary)]
+    if summary.blocks:
+        tables.append(_block_table(summary))
+    if summary.arrays:
+        tables.append(_array_table(summary))
+    return str(file), summary.problem, tables
 
 
 def _table(*titles: str, right: tuple[str, ...] = ()) -> Table:
@@ -190,36 +205,50 @@ def _field_table(field: FlowField, *, has_reading: bool = False) -> Table:
     from flowtex.textures.tiles.shared import has_pyramid
     from flowtex.trace.store import changing_share, chosen_lines
 
-    on_grid = field.triangles is None
-    (rows, columns) = field.shape
-    ends = f"{field.times[0]:g} to {field.times[-1]:g} {field.time_unit}".rstrip()
-    if field.start is not None:
-        ends = expected_times(field.start, field.times)
+    rows = _size_rows(field)
     if field.steady:
-        lines = ""
+        rows["times"] = "one, steady"
     else:
-        lines = (
+        ends = f"{field.times[0]:g} to {field.times[-1]:g} {field.time_unit}".rstrip()
+        if field.start is not None:
+            ends = expected_times(field.start, field.times)
+        rows["times"] = f"{len(field.times)}, {ends}"
+        rows["lines"] = (
             f"{chosen_lines(field)} (within a streak, the flow changes by half at "
             f"{changing_share(field):.0%} of the nodes)"
         )
-    closed = [a for a, is_closed in zip("ji", field.periodic, strict=True) if is_closed]
-    shape = "curved" if field.surface.frame is None else "flat"
+    rows["blanked"] = f"{int((~field.valid).sum()):,} nodes"
+    if field.sign_free:
+        rows["signs"] = "none: v and -v mean the same"
+    rows["scalars"] = ", ".join(dict.fromkeys(("speed", *field.scalars, *DERIVED)))
+    shape = "flat"
+    if field.surface.frame is None:
+        shape = "curved"
     extent = f"{field.surface.extent:.4g} {field.length_unit}".rstrip()
-    table = _pairs(
-        {
-            "nodes": f"{columns} × {rows} (i × j)" if on_grid else f"{field.valid.size:,}",
-            "triangles": "" if field.triangles is None else f"{len(field.triangles):,}",
-            "times": "one, steady" if field.steady else f"{len(field.times)}, {ends}",
-            "lines": lines,
-            "periodic": (" and ".join(sorted(closed)) or "no") if on_grid else "",
-            "blanked": f"{int((~field.valid).sum()):,} nodes",
-            "signs": "none: v and -v mean the same" if field.sign_free else "",
-            "scalars": ", ".join(dict.fromkeys(("speed", *field.scalars, *DERIVED))),
-            "surface": f"{shape}, {extent} across",
-            "lost": f"{field.normal_share:.1%} of the flow is normal to the surface",
-        },
-        "What would be drawn by default" if has_pyramid(field) else "What would be drawn",
-    )
-    for step in () if has_reading else field.reading:
-        table.add_row(step.step, step.text)
+    rows["surface"] = f"{shape}, {extent} across"
+    rows["lost"] = f"{field.normal_share:.1%} of the flow is normal to the surface"
+    title = "What would be drawn"
+    if has_pyramid(field):
+        title += " by default"
+    table = _pairs(rows, title)
+    if not has_reading:
+        for step in field.reading:
+            table.add_row(step.step, step.text)
     return table
+
+
+def _size_rows(field: FlowField) -> dict[str, str]:
+    """Return rows about the nodes of a field, and about its triangles or its closed axes."""
+    if field.triangles is not None:
+        return {"nodes": f"{field.valid.size:,}", "triangles": f"{len(field.triangles):,}"}
+    rows, columns = field.shape
+    closed_rows, closed_columns = field.periodic
+    closed = []
+    if closed_columns:
+        closed.append("i")
+    if closed_rows:
+        closed.append("j")
+    return {
+        "nodes": f"{columns} × {rows} (i × j)",
+        "periodic": " and ".join(closed) or "no",
+    }

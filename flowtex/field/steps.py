@@ -100,7 +100,12 @@ class LazySteps:
         return step
 
     def __getitem__(self, key: Any) -> Any:
-        first, rest = (key[0], key[1:]) if isinstance(key, tuple) else (key, ())
+        if isinstance(key, tuple):
+            first = key[0]
+            rest = key[1:]
+        else:
+            first = key
+            rest = ()
         if isinstance(first, (int, np.integer)):
             if rest:
                 return self.step(int(first))[rest]

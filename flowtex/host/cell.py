@@ -102,7 +102,11 @@ def _display(shown: Any) -> None:
     from IPython.display import display
 
     bundle = shown._repr_mimebundle_()
-    data, metadata = bundle if isinstance(bundle, tuple) else (bundle, {})
+    if isinstance(bundle, tuple):
+        data, metadata = bundle
+    else:
+        data = bundle
+        metadata = {}
     cell = _cell_number()
     _stills_of_cells[cell] += 1
     if _kernel_shell() is None or _stills_of_cells[cell] > MOST_STILLS:

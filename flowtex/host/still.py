@@ -147,19 +147,7 @@ def _drawn(view: WebView, data: ClientData, size: tuple[int, int], camera: Camer
     if has_arrows(data.textures, scene.settings):
         length = ARROW_LENGTH * arrow_distance(scene.settings)
         for path in _arrow_paths(view, data, picture, camera, size):
-            path = path[np.append(True, np.diff(path, axis=0).any(axis=-1))]
-            if len(path) <= ARROW_STEPS:
-                continue
-            tip = path[-1]
-            back = path[-1] - path[-2]
-            back *= HEAD * length / max(float(np.hypot(*back)), 1e-9)
-            side = HEAD_WIDTH / HEAD * np.array([-back[1], back[0]])
-            head = [tuple(p) for p in (tip, tip - back + side, tip - back - side)]
-            shaft = [tuple(p) for p in path[: -ARROW_STEPS // 2]]
-            for more, ink in ((HALO_PX, "white"), (0, "black")):
-                draw.line(shaft, ink, SHAFT_PX + more, joint="curve")
-                draw.line([*head, head[0]], ink, more or 1, joint="curve")
-            draw.polygon(head, "black")
+            _draw_arrow(draw, path, length)
     wide = float(np.clip(np.sqrt(size[1] / USUAL_HEIGHT_PX), *WIDTH_RANGE))
     for pieces, color, thick, _ in strokes(scene.structure, scene.settings, scene.step):
         for start, end in pixels_of(pieces, camera, size):
@@ -170,27 +158,33 @@ def _drawn(view: WebView, data: ClientData, size: tuple[int, int], camera: Camer
     return image
 
 
+def _draw_arrow(draw: ImageDraw.ImageDraw, path: AnyArray, length: float) -> None:
+    """Draw a shaft along a path of pixels and a head at its end, unless the flow ends there."""
+    goes_on = np.append(True, np.diff(path, axis=0).any(axis=-1))
+    path = path[goes_on]
+    if len(path) <= ARROW_STEPS:
+        return
+    tip = path[-1]
+    back = path[-1] - path[-2]
+    back *= HEAD * length / max(float(np.hypot(*back)), 1e-9)
+    side = HEAD_WIDTH / HEAD * np.array([-back[1], back[0]])
+    head = [tuple(tip), tuple(tip - back + side), tuple(tip - back - side)]
+    shaft = [tuple(p) for p in path[: -ARROW_STEPS // 2]]
+    for more, ink in ((HALO_PX, "white"), (0, "black")):
+        draw.line(shaft, ink, SHAFT_PX + more, joint="curve")
+        draw.line([*head, head[0]], ink, more or 1, joint="curve")
+    draw.polygon(head, "black")
+
+
 def _arrow_paths(
     view: WebView, data: ClientData, picture: Picture, camera: Camera, size: tuple[int, int]
 ) -> Iterator[AnyArray]:
     """Yield the pixels of arrows from tail to head, along the directions of the picture."""
-    geometry, aspect = data.textures.geometry, size[0] / size[1]
-    matrix, apart = camera.matrix(aspect), arrow_distance(view.scene.settings)
-    sides = np.stack([matrix[3] + sign * matrix[row] for row in (0, 1) for sign in (1, -1)])
-    half = camera.height / (1 if camera.parallel else camera.distance)
-    eye = None if camera.parallel else np.asarray(camera.position)
-    seeds = ArrowSeeds(geometry).seen(TileView(eye, half, size[1], sides), apart)
-    points = seeds.position @ geometry.frame + geometry.center
-    away = 1.0 if eye is None else np.linalg.norm(points - eye, axis=1)
-    points = points[seeds.radius * size[1] > 2 * half * away * apart]
-    # Directions on the screen, of the nearest node of each pixel.
-    field, pixels = data.field, picture.position
-    velocity = field.velocity[view.scene.step].reshape(-1, 3)[picture.nearest]
-    speed = np.maximum(np.linalg.norm(velocity, axis=-1, keepdims=True), np.finfo(float).tiny)
-    moved = pixels + velocity / speed * camera.height * 1e-3
-    way = np.subtract(*(pixels_of(p, camera, size) for p in (moved, pixels)))
-    way = scipy.ndimage.gaussian_filter(np.nan_to_num(way), (SMOOTHING_PX, SMOOTHING_PX, 0))
-    way /= np.maximum(np.linalg.norm(way, axis=-1, keepdims=True), np.finfo(float).tiny)
+    apart = arrow_distance(view.scene.settings)
+    points = _arrow_points(data, camera, size, apart)
+    pixels = picture.position
+    velocity = data.field.velocity[view.scene.step].reshape(-1, 3)
+    way = _directions_on_screen(pixels, velocity[picture.nearest], camera, size)
     scale = np.array(picture.covered.shape[::-1]) / size
 
     def at(values: AnyArray, places: Floats) -> Floats:
@@ -200,13 +194,15 @@ def _arrow_paths(
     covered = picture.covered.astype(float)
     start = pixels_of(points, camera, size)
     inside = ((start >= 0) & (start < size)).all(axis=-1) & (at(covered, start) > INSIDE)
-    start, points = start[inside], points[inside]
+    start = start[inside]
+    points = points[inside]
     shown = np.stack([at(np.nan_to_num(pixels[..., n]), start) for n in range(3)], axis=-1)
     start = start[np.linalg.norm(shown - points, axis=-1) < HIDDEN * camera.height]
     step = ARROW_LENGTH * apart / (2 * ARROW_STEPS)
     tracks: list[list[Floats]] = []
     for sign in (-1, 1):
-        place, track = start, []
+        place = start
+        track = []
         for _ in range(ARROW_STEPS):
             moved = np.stack([at(way[..., n], place) for n in (0, 1)], axis=-1)
             goes_on = at(covered, place + sign * step * moved) > INSIDE  # else the flow ends
@@ -214,6 +210,40 @@ def _arrow_paths(
             track.append(place)
         tracks.append(track)
     yield from np.stack([*tracks[0][::-1], start, *tracks[1]], axis=1)
+
+
+def _arrow_points(
+    data: ClientData, camera: Camera, size: tuple[int, int], apart: float
+) -> AnyArray:
+    """Return the positions of arrows (N, 3), as far apart as the camera needs them."""
+    geometry = data.textures.geometry
+    matrix = camera.matrix(size[0] / size[1])
+    sides = np.stack([matrix[3] + sign * matrix[row] for row in (0, 1) for sign in (1, -1)])
+    if camera.parallel:
+        eye = None
+        half = camera.height
+    else:
+        eye = np.asarray(camera.position)
+        half = camera.height / camera.distance
+    seeds = ArrowSeeds(geometry).seen(TileView(eye, half, size[1], sides), apart)
+    points = seeds.position @ geometry.frame + geometry.center
+    away: Any = 1.0
+    if eye is not None:
+        away = np.linalg.norm(points - eye, axis=1)
+    return points[seeds.radius * size[1] > 2 * half * away * apart]
+
+
+def _directions_on_screen(
+    positions: AnyArray, velocity: AnyArray, camera: Camera, size: tuple[int, int]
+) -> AnyArray:
+    """Return unit vectors in pixels, smoothed, for the positions of pixels (J, I, 3)."""
+    least = np.finfo(float).tiny
+    speed = np.maximum(np.linalg.norm(velocity, axis=-1, keepdims=True), least)
+    moved = positions + velocity / speed * camera.height * 1e-3
+    way = pixels_of(moved, camera, size) - pixels_of(positions, camera, size)
+    way = scipy.ndimage.gaussian_filter(np.nan_to_num(way), (SMOOTHING_PX, SMOOTHING_PX, 0))
+    way /= np.maximum(np.linalg.norm(way, axis=-1, keepdims=True), least)
+    return way
 
 
 def preview_png(

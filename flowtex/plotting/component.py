@@ -462,8 +462,14 @@ def _body(mesh: pv.PolyData, cells: Indices, first: int, colour: Any = None, **l
         colours = mesh.point_data[COLOURS][used]
     if colour is not None:
         colours = np.concatenate([np.tile(_bytes(colour), (len(used), 1)), colours[:, 3:]], axis=1)
-    faces = cells if count == 3 else np.zeros((0, 3), np.intp)
-    pieces = cells if count == 2 else np.zeros((0, 2), np.intp)
+    if count == 3:
+        faces = cells
+    else:
+        faces = np.zeros((0, 3), np.intp)
+    if count == 2:
+        pieces = cells
+    else:
+        pieces = np.zeros((0, 2), np.intp)
     return Body(
         np.asarray(mesh.points, dtype=float)[used],
         np.asarray(colours),

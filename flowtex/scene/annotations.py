@@ -230,7 +230,12 @@ class _Writer:
         self.gap, self._pad = self._px(closer * GAP), self._px(closer * PADDING)
         self._background = rgb(background)
         light = is_light(self._background)
-        self._plate, self.ink = ("white", "black") if light else ("black", "white")
+        if light:
+            self._plate = "white"
+            self.ink = "black"
+        else:
+            self._plate = "black"
+            self.ink = "white"
 
     def texts(self, text: str, room: tuple[str, ...] = ()) -> Iterator[Image.Image]:
         """Yield a plate with one line, with room for the widest of ``room``."""

@@ -412,7 +412,11 @@ class Scene:
         self.scalar_steps(name)
         if appearance.norm is not None:
             scale_of(appearance, self._limits(appearance))
-        low, high = self._limits(appearance) if appearance.log_scale else (1.0, 1.0)
+        if appearance.log_scale:
+            low, high = self._limits(appearance)
+        else:
+            low = 1.0
+            high = 1.0
         if low <= 0:
             raise FieldError(
                 f"log_scale is True, but {name!r} ranges from {low:g} to {high:g}; expected values "

@@ -426,7 +426,12 @@ class NodeGrid:
 
         The set of each particle begins at index ``base``.
         """
-        at, first = (corners.at + base, 0) if np.ndim(base) else (corners.at, int(base))
+        if np.ndim(base):
+            at = corners.at + base
+            first = 0
+        else:
+            at = corners.at
+            first = int(base)
         # Products of complex numbers with complex ones are several times as fast.
         s = corners.s.astype(data.dtype, copy=False)
         t = corners.t.astype(data.dtype, copy=False)

@@ -293,7 +293,12 @@ def _distance(chosen: Bools) -> Floats:
     for axis in (0, 1):
         lines = np.arange(chosen.shape[axis])
         at = np.flatnonzero(chosen.any(axis=1 - axis))
-        first, last = (at[0], at[-1]) if len(at) else (0, len(lines) - 1)
+        if len(at):
+            first = at[0]
+            last = at[-1]
+        else:
+            first = 0
+            last = len(lines) - 1
         beyond = np.maximum(np.maximum(first - lines, lines - last), 0)
         distances.append(beyond / max(beyond.max(), 1))
     return np.asarray(np.maximum(distances[0][:, None], distances[1][None, :]))

@@ -140,7 +140,10 @@ class Routes:
         stem, _, rest = name.partition(".")
         try:
             content = self._content[stem](rest)
-            body, kind, saved_as = await content if inspect.isawaitable(content) else content
+            if inspect.isawaitable(content):
+                body, kind, saved_as = await content
+            else:
+                body, kind, saved_as = content
         except (LookupError, ValueError, FileNotFoundError):
             raise web.HTTPNotFound from None
         headers = {

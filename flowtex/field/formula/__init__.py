@@ -269,7 +269,12 @@ class Formula:
         along = np.zeros((*u.shape, COMPONENTS))
         for k, (low, high) in enumerate(self.ranges.values()):
             h = TANGENT_SHARE * (high - low)
-            du, dv = (h, 0.0) if k == 0 else (0.0, h)
+            if k == 0:
+                du = h
+                dv = 0.0
+            else:
+                du = 0.0
+                dv = h
             tangent = (self.points(u + du, v + dv) - self.points(u - du, v - dv)) / (2 * h)
             along += rates[..., k, None] * tangent
         return along

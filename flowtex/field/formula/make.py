@@ -6,6 +6,7 @@ Such a line is ``y; -sin(x) - b*y; x=-7,7; b=0.2,0,1``, or ``pendulum; b=0.5``.
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -123,49 +124,63 @@ def formula(
     (147, 257)
     """
     if len(expressions) == 1:
-        expressions_move = str(expressions[0]).replace(" ", "_") in MOVING
+        known = str(expressions[0])
         title, expressions, defaults = _known_formula(expressions[0])
         name = name or title
-        ends = defaults.pop("x"), defaults.pop("y")
-        x, y = x or ends[0], y or ends[1]
+        usual_x = defaults.pop("x")
+        usual_y = defaults.pop("y")
+        x = x or usual_x
+        y = y or usual_y
         for key in parameters:
             if key not in defaults:
                 raise FieldError(f"{title} has no parameter {key!r}; {near_names(key, defaults)}")
-        if expressions_move and x == ends[0] and y == ends[1]:
+        expressions_move = known.replace(" ", "_") in MOVING
+        if expressions_move and x == usual_x and y == usual_y:
             _check_ranges(title, parameters, defaults)
         parameters = {**defaults, **parameters}
-    steps = None if times is None else _times(times)
+    steps = None
+    moments: Sequence[float] | Floats = [0.0]
+    if times is not None:
+        steps = _times(times)
+        moments = steps
     ranges = {"x": x, "y": y, "u": u, "v": v}
     flow = Formula.of(expressions, surface, ranges, parameters, timed=steps is not None)
-    expected = f"2 to {MOST_NODES:,} nodes"
-    default = SURFACE_NODES if flow.surface else NODES
-    count = default if resolution is None else resolution
-    count = checked_count("resolution", count, 2, MOST_NODES, expected=expected)
-    shape = (count, count)
-    if not flow.surface:
-        width, height = (high - low for low, high in flow.ranges.values())
-        rows, columns = (
-            max(round((count - 1) * side / max(width, height)) + 1, min(count, LEAST_NODES))
-            for side in (height, width)
-        )
-        shape = (rows, columns)
-    coordinates = flow.coordinates(shape)
-    moments = [0.0] if steps is None else steps
+    coordinates = flow.coordinates(_grid_shape(flow, resolution))
     velocity = np.stack([flow.velocity(*coordinates, float(t)) for t in moments])
     points = flow.points(*coordinates)
     values = np.concatenate([*velocity, points], axis=-1)
     gaps: Bools = np.isnan(values).any(axis=-1)
     if (gaps[1:, 1:] | gaps[1:, :-1] | gaps[:-1, 1:] | gaps[:-1, :-1]).all():
         raise FieldError(f"{flow.title} has no value in any cell of the grid; choose other ranges")
-    title = flow.title if len(flow.title) <= MOST_TITLE else flow.title[:MOST_TITLE] + "…"
+    title = flow.title
+    if len(title) > MOST_TITLE:
+        title = title[:MOST_TITLE] + "…"
+    periodic = ""
+    if flow.surface:
+        periodic = _closed(points)
     field = FlowField.from_arrays(
-        points,
-        velocity,
-        times=steps,
-        periodic=_closed(points) if flow.surface else "",
-        name=name or title,
+        points, velocity, times=steps, periodic=periodic, name=name or title
     )
     return replace(field, formula=flow)
+
+
+def _grid_shape(flow: Formula, resolution: int | None) -> tuple[int, int]:
+    """Return the number of nodes (J, I); those of a plane are equally far apart along x and y."""
+    if resolution is None:
+        count = NODES
+        if flow.surface:
+            count = SURFACE_NODES
+    else:
+        expected = f"2 to {MOST_NODES:,} nodes"
+        count = checked_count("resolution", resolution, 2, MOST_NODES, expected=expected)
+    if flow.surface:
+        return count, count
+    width, height = (high - low for low, high in flow.ranges.values())
+    longest = max(width, height)
+    fewest = min(count, LEAST_NODES)
+    rows = max(round((count - 1) * height / longest) + 1, fewest)
+    columns = max(round((count - 1) * width / longest) + 1, fewest)
+    return rows, columns
 
 
 def _known_formula(name: Any) -> tuple[str, tuple[str, ...], dict[str, Any]]:

@@ -169,7 +169,12 @@ class GridSurface(NodeSurface):
         columns[0], columns[-1] = ghosts
         for pole in self.poles or ():
             lines = pole.lines(padded)
-            ghost, ring = (0, 2) if pole.inward > 0 else (-1, -3)
+            if pole.inward > 0:
+                ghost = 0
+                ring = 2
+            else:
+                ghost = -1
+                ring = -3
             lines[ghost] = _over(lines[ring], pole)
         return padded
 

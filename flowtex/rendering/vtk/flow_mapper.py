@@ -152,7 +152,10 @@ class MappedColours(NamedTuple):
             values = None
         table = mapper.GetLookupTable()
         uses_table_range = mapper.GetUseLookupTableScalarRange()
-        low, high = table.GetRange() if uses_table_range else mapper.GetScalarRange()
+        if uses_table_range:
+            low, high = table.GetRange()
+        else:
+            low, high = mapper.GetScalarRange()
         if values is None or values.GetNumberOfComponents() != 1 or not high > low:
             return None
         if table.UsingLogScale() and not low > 0:

@@ -60,8 +60,14 @@ def parts_file(parts: Mapping[str, AnyArray], *, planes: bool = False) -> bytes:
     """
     infos = []
     buffers = []
+    packing: Header
+    buffer: bytes | memoryview
     for name, array in parts.items():
-        packing, buffer = _packed(array) if planes and array.ndim > 1 else ({}, part_buffer(array))
+        if planes and array.ndim > 1:
+            packing, buffer = _packed(array)
+        else:
+            packing = {}
+            buffer = part_buffer(array)
         infos.append({**part_info(name, array), "bytes": array.nbytes, **packing})
         buffers.append(buffer)
     text = json.dumps(infos).encode()
@@ -93,7 +99,10 @@ def _packed(array: AnyArray) -> tuple[Header, bytes]:
     ``differences`` along the rows and along the columns of nodes, with the sign as the last bit.
     The bytes of a channel and of one significance lie side by side. Nothing is lost.
     """
-    width, channels = array.shape[-2:] if array.ndim > 2 else (*array.shape, 1)[-2:]
+    if array.ndim > 2:
+        width, channels = array.shape[-2:]
+    else:
+        width, channels = (*array.shape, 1)[-2:]
     whole, scale = _whole(array, channels)
     numbers = whole.view(f"<u{whole.itemsize}").reshape(-1, max(width, 1), channels)
     middle = len(numbers) // 2

@@ -76,7 +76,7 @@ def test_surface_without_sharp_edges_keeps_its_nodes() -> None:
 def test_smooth_surface_is_read_without_neighbours_of_triangles() -> None:
     points, triangles = sphere(3)
     field = FlowField.from_triangles(points, triangles, np.tile(WIND, (len(points), 1)))
-    surface = field.surface
+    surface: Any = field.surface
     assert not surface.flipped.any()
     assert "neighbours" not in surface.__dict__
 
