@@ -32,8 +32,6 @@ def with_attributes(path: Path, **attributes: object) -> Path:
 def test_line_of_another_package_has_the_name_of_the_file(tmp_path: Path) -> None:
     for name, line in {
         "m.ovf": 'flowtex.show(discretisedfield.Field.from_file("m.ovf").to_xarray())',
-        "flow.tif": 'flowtex.show(rioxarray.open_rasterio("flow.tif", band_as_variable=True), '
-        'vectors="band_1,band_2")',
         "flow.parquet": 'flowtex.show(pandas.read_parquet("flow.parquet"))',
         "piv.mat": 'data = scipy.io.loadmat("piv.mat")',
         "photo.png": "v, u = skimage.registration.optical_flow_tvl1(first, second)",

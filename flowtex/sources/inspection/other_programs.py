@@ -34,11 +34,6 @@ LINES = {
     ".xlsx": ("a spreadsheet", 'flowtex.show(pandas.read_excel("{name}"))'),
     ".shp": ("a shapefile", 'flowtex.show(geopandas.read_file("{name}"))'),
     ".gpkg": ("a GeoPackage", 'flowtex.show(geopandas.read_file("{name}"))'),
-    ".tif": (
-        "a raster of bands",
-        'flowtex.show(rioxarray.open_rasterio("{name}", band_as_variable=True), '
-        'vectors="band_1,band_2")',
-    ),
     ".im7": (
         "an image of DaVis",
         'export vectors as text in DaVis, and flowtex.show("B00001.txt")',
@@ -51,7 +46,7 @@ LINES = {
 #: Endings of images.
 IMAGES = (".png", ".jpg", ".jpeg", ".bmp", ".gif")
 #: Endings of the same formats.
-ALIKE = {".omf": ".ovf", ".arrow": ".feather", ".xls": ".xlsx", ".tiff": ".tif"}
+ALIKE = {".omf": ".ovf", ".arrow": ".feather", ".xls": ".xlsx"}
 #: Endings of HDF5.
 HDF5 = (".h5", ".hdf5", ".hdf", ".he5")
 #: Groups of HDF5 that PyVista's readers know: VTK, and Common Fluids Format of Fluent.

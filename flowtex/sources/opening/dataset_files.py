@@ -24,7 +24,7 @@ from flowtex.sources.inspection.inspect_file import NETCDF, inspect_file
 from flowtex.sources.models.conventions import with_mesh_axes
 from flowtex.sources.models.drifters import as_points
 from flowtex.sources.notices import NOTE, Record
-from flowtex.sources.opening import component_axes, flow_text, tables
+from flowtex.sources.opening import component_axes, flow_text, rasters, tables
 from flowtex.sources.opening.column_values import plain_values
 from flowtex.sources.reader_errors import check_memory
 
@@ -54,9 +54,9 @@ TABLES = {
     ".vec": tables.read_vec,
 }
 #: Suffixes that files of other content have as well; folders are not searched for them.
-COMMON = (".txt",)
+COMMON = (".txt", ".tif", ".tiff")
 #: Suffixes of files that are opened by xarray.
-SUFFIXES = (*NETCDF, *GRIB, *ZARR, *SELAFIN, *JSON, *TABLES)
+SUFFIXES = (*NETCDF, *GRIB, *ZARR, *SELAFIN, *JSON, *TABLES, *rasters.SUFFIXES)
 
 
 class Datasets(list["xr.Dataset"]):
@@ -446,6 +446,8 @@ def open_files(path: Path) -> Datasets:
             return Datasets([tables.read_winds(path)])
         if suffix in TABLES:
             return Datasets([TABLES[suffix](path)])
+        if suffix in rasters.SUFFIXES:
+            return Datasets([rasters.read_raster(path)])
         if suffix in SELAFIN:
             return Datasets([_selafin(path)])
         if suffix in GRIB:

@@ -10,12 +10,21 @@ import mesh_files
 import model_files
 import point_files
 import pytest
+import raster_files
 import text_forms
 from known_flow import check
 from supported import ROWS, Supported, drawn
 
 pytest.importorskip("pyproj")
-MODULES = (direction_files, global_files, mesh_files, model_files, point_files, text_forms)
+MODULES = (
+    direction_files,
+    global_files,
+    mesh_files,
+    model_files,
+    point_files,
+    raster_files,
+    text_forms,
+)
 
 
 @pytest.mark.parametrize("row", ROWS, ids=lambda row: row.make.__name__)

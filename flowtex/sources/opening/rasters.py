@@ -1,0 +1,75 @@
+"""Rasters such as GeoTIFF as datasets: two bands of one file, or one band of each of two files."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from flowtex.errors import FieldError, import_package
+from flowtex.sources.notices import NOTE
+from flowtex.sources.reader_errors import check_memory
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+SUFFIXES = (".tif", ".tiff")
+#: Parts of names of files that tell the components, as in ``greenland_vx_v1.tif``.
+COMPONENT = re.compile(r"(?<![a-z])(v[xy]|u[xy]|[uv]o?)(?![a-z0-9])", re.IGNORECASE)
+
+
+def read_raster(path: Path) -> xr.Dataset:
+    """Return a variable for each band, with its unit, scale and offset; NaN where data are missing.
+
+    A band is named by its description, and the only band of a file by the name of the file.
+
+    Parameters
+    ----------
+    path
+        The file of one raster.
+
+    Raises
+    ------
+    ModuleNotFoundError
+        If rioxarray is not installed.
+    FieldError
+        If the raster has no positions.
+    """
+    rioxarray = import_package("rioxarray", "a raster such as GeoTIFF")
+    # Other formats, which GDAL would know by their content, name further files and addresses.
+    options = {"band_as_variable": True, "mask_and_scale": True, "driver": "GTiff"}
+    with rioxarray.open_rasterio(path, **options) as bands:
+        check_memory(bands.nbytes, "the raster")
+        ds: xr.Dataset = bands.load()
+    if ds.rio.transform().is_identity:
+        raise FieldError(
+            "the raster has no positions, as images have none; expected a GeoTIFF. The flow "
+            "between two images is v, u = skimage.registration.optical_flow_tvl1(first, second)"
+        )
+    names = _names(ds, path)
+    if not names and len(ds.data_vars) == 2:
+        names = {"band_1": "vx", "band_2": "vy"}
+        ds.encoding[NOTE] = (
+            "the bands have no names; band 1 is taken as the component along x, and band 2 as "
+            "that along y. To exchange them: vectors='vy,vx'"
+        )
+    ds = ds.rename_vars(names)
+    for name in ("vx", "vy"):
+        if name in ds:  # files of glaciers often have no unit, by which a velocity is known
+            ds[name].attrs.setdefault("long_name", f"{name[1]} velocity")
+    return ds
+
+
+def _names(ds: xr.Dataset, path: Path) -> dict[str, str]:
+    """Return names of bands by their descriptions, or that of the file for a single band."""
+    names: dict[str, str] = {}
+    for band, array in ds.data_vars.items():
+        described = re.sub(r"\W+", "_", str(array.attrs.get("long_name", "")).strip())
+        if described and described not in names.values():
+            names[str(band)] = described
+    if not names and len(ds.data_vars) == 1:
+        found = COMPONENT.search(path.stem)
+        if found is not None:
+            return {"band_1": found[0]}
+        return {"band_1": path.stem}
+    return names
