@@ -124,6 +124,7 @@ def _known(name: Any) -> Any:
 
 
 def _named_table(name: Any, count: int) -> Bytes:
+    """Return a colour map by its name, as RGBA rows, (count, 4) uint8."""
     from matplotlib import colormaps
 
     colours = _known(name)
@@ -161,6 +162,7 @@ def rounded_ends(low: float, high: float, *, log_scale: bool) -> tuple[float, fl
 
 
 def _resampled(colours: AnyArray, count: int) -> Bytes:
+    """Return a table (count, 4) uint8 from colours (N, 3 or 4), floats from 0 to 1 or bytes."""
     if colours.ndim != 2 or colours.shape[1] not in (3, 4) or not len(colours):
         raise FieldError(f"cmap has shape {colours.shape}; expected a name, or (N, 3) or (N, 4)")
     values = colours.astype(float) * (255.0 if colours.dtype.kind == "f" else 1.0)

@@ -125,6 +125,7 @@ def _store_table(place: Path) -> Table:
 
 
 def _recognised_table(paths: list[Path]) -> Table:
+    """Return a table of what was recognised in dataset files."""
     from flowtex.sources.datasets.read_datasets import recognised
     from flowtex.sources.opening.dataset_files import open_datasets
     from flowtex.sources.reader_errors import errors_of_file

@@ -87,6 +87,7 @@ def plain_grid(points: Any, velocity: Any, components: Sequence[Any]) -> PlainFl
 
 
 def _pair(points: Any, velocity: Any) -> PlainFlow:
+    """Return positions and velocity, reordered unless their shapes are the usual ones."""
     try:
         shape = np.shape(host_array("velocity", velocity))
         is_usual = len(shape) in (3, 4) and shape[-1] in COMPONENTS

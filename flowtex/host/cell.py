@@ -121,6 +121,7 @@ def _display(shown: Any) -> None:
 
 
 def _display_still(shown: Any, name: str, *, update: bool = False) -> None:
+    """Display a still picture of widgets in the output of a cell, or replace the one of this name."""
     from IPython.display import display
 
     keys = " ".join(widget._key for widget in _displayed_in(shown) if widget.comm is not None)
@@ -134,6 +135,7 @@ def _display_still(shown: Any, name: str, *, update: bool = False) -> None:
 
 
 def _pictures(shown: Any) -> str:
+    """Return still pictures of widgets as HTML, arranged as the widgets are."""
     if isinstance(shown, ipywidgets.Box):
         if isinstance(shown, ipywidgets.VBox):
             direction = "column"

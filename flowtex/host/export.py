@@ -226,6 +226,7 @@ def page_text(views: Sequence[WebView], *, store: str | None = None, **options: 
 
 
 def _with_tiles(scene: ClientData) -> ClientData:
+    """Return a scene with as many finer levels as fit into a page."""
     pyramid = scene.pyramid
     if pyramid is None:
         return scene
@@ -434,6 +435,7 @@ def json_text(value: object) -> str:
 def _packed(
     scenes: Sequence[ClientData], time: float | None, *, is_linked: bool
 ) -> Iterator[tuple[int, Header, str]]:
+    """Yield each part of a page: number of its scene, entry in the header, and text if it is new."""
     written: dict[str, Header] = {}
     for n, scene in enumerate(scenes):
         names: set[str] = set()
@@ -510,6 +512,7 @@ def store_header(stored: StoredPyramid, scene: ClientData, address: str | None) 
 
 
 def _stored(view: WebView) -> StoredPyramid:
+    """Return the store from which a page can read its tiles; raise a FieldError without one."""
     scene = view.scene
     pyramid = scene.pyramid
     if scene.settings.noise != "procedural":

@@ -281,6 +281,7 @@ class MeshSource(FlowSource):
             self.default_plane = self.plane_at(shortest, CUTS // 2)
 
     def _names(self, grid: Any) -> tuple[str, ...]:
+        """Return the names of vectors that can be the velocity, the likely one first."""
         names = [array.name for array in candidates(grid)]
         if self._velocity is None:
             first = grid.active_vectors_name

@@ -126,6 +126,7 @@ def _labelled_field(
 
 
 def _refuse_direction(options: FieldOptions) -> None:
+    """Raise a FieldError if ``direction`` is given, which only data with names have."""
     if options.direction is not None:
         raise FieldError(
             f"direction is {options.direction!r}, a variable of a dataset or a column of a table. "

@@ -213,6 +213,7 @@ class Child:
 
 
 def _value(header: dict[str, Any], memory: int) -> Any:
+    """Return the value of an answer, or raise the error that it describes."""
     kind = header.get("error")
     text = str(header.get("text", ""))
     if kind is None:
@@ -253,6 +254,7 @@ def _listen(
 
 
 def _ending(status: int | None) -> str:
+    """Return how a process ended, from its exit status, as the end of a sentence."""
     if status is None:
         return ENDED
     if status >= 0:

@@ -133,6 +133,7 @@ def from_link(text: str, faults: list[str] | None = None) -> dict[str, Any]:
 
 
 def _pairs(text: str, faults: list[str]) -> list[tuple[str, str]]:
+    """Return names and values of the query of a link; none, and a fault, if it is too long."""
     query = re.split(r"[?#]", text)[-1]
     if len(query) > LINK_LENGTH:
         faults.append(f"the link has {len(query):,} characters; expected {LINK_LENGTH:,} at most")
@@ -226,6 +227,7 @@ def to_python(
 
 
 def _render(state: State, source: str | None, size: tuple[int, int]) -> str:
+    """Return a call of :func:`flowtex.render` that draws what a state shows, as Python code."""
     values: dict[str, Any] = {}
     if source is None:
         if not state.get("file"):
@@ -247,6 +249,7 @@ def _render(state: State, source: str | None, size: tuple[int, int]) -> str:
 
 
 def _part(state: State) -> dict[str, Any]:
+    """Return the part of the file that a state shows, as arguments of :func:`flowtex.render`."""
     values = {}
     for name in FILE_ARGUMENTS:
         if state.get(name):

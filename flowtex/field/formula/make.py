@@ -184,6 +184,7 @@ def _grid_shape(flow: Formula, resolution: int | None) -> tuple[int, int]:
 
 
 def _known_formula(name: Any) -> tuple[str, tuple[str, ...], dict[str, Any]]:
+    """Return the title of a known formula, its expressions, and further arguments by name."""
     if isinstance(name, str):
         key = name.replace(" ", "_")
     else:
@@ -214,6 +215,7 @@ def _check_ranges(title: str, given: dict[str, Any], defaults: dict[str, Any]) -
 
 
 def _times(times: ArrayLike) -> Floats:
+    """Return times as numbers, (T,), which must be finite and increase."""
     values = checked_array("times", times, expected="times that increase, such as [0, 1, 2]")
     if (
         values.ndim != 1

@@ -246,6 +246,7 @@ def _averaged(
 
 
 def _placed(flow: Flow, projection: str | None) -> tuple[Placed, dict[str, Any]]:
+    """Return the nodes of a flow on a map or in a plane, and arguments of its field."""
     places, mesh = flow.places, flow.mesh
     if mesh is None:
         if not places.is_earth:
@@ -262,6 +263,7 @@ def _placed(flow: Flow, projection: str | None) -> tuple[Placed, dict[str, Any]]
 
 
 def _units(flow: Flow) -> dict[str, str]:
+    """Return the units of length and time of a flow, as arguments of its field."""
     record, unit = flow.record, flow.unit
     names = f"{flow.pair.u.name} and {flow.pair.v.name}"
     times = flow.drawn.times
@@ -320,6 +322,7 @@ class _Scalar(NamedTuple):
 
 
 def _scalars(flow: Flow) -> dict[str, _Scalar]:
+    """Return the variables at the positions and times of the velocity, by name."""
     scalars: dict[str, _Scalar] = {}
     used = (flow.pair.u.name, flow.pair.v.name)
     # Dimensions of the same name do not distinguish the sides of cells from their centres.

@@ -399,6 +399,7 @@ def _rank(u: xr.DataArray, source: str, rest: str) -> int | None:
 
 
 def _directions(u: xr.DataArray) -> str:
+    """Return ``"grid"`` or ``"earth"`` if attributes or names say how a component points, else ""."""
     relative = u.attrs.get("GRIB_uvRelativeToGrid")
     if relative is not None:
         return "grid" if int(relative) else "earth"
@@ -434,6 +435,7 @@ def variable(datasets: Sequence[xr.Dataset], name: str) -> xr.DataArray:
 
 
 def _no_pair(datasets: Sequence[xr.Dataset]) -> str:
+    """Return the text of the error for datasets without two components of a velocity."""
     arrays = [a for ds in datasets for a in ds.data_vars.values() if _may_be_component(a)]
     for u, source in product(arrays, NAMES):
         text = _text(u, source)

@@ -239,6 +239,7 @@ def _by_lines(u: xr.DataArray, v: xr.DataArray, at_u: Places, at_v: Places, reco
 
 
 def _apart(u: xr.DataArray, v: xr.DataArray, at_u: Places, at_v: Places) -> str:
+    """Return the text of the error for components whose positions do not fit together."""
     texts = []
     for array, places in ((u, at_u), (v, at_v)):
         ends = [labels.text(line) for line in places.lines]
@@ -271,6 +272,7 @@ def _offset(at_u: Places, at_v: Places) -> tuple[float, float] | None:
 
 
 def _own_places(array: xr.DataArray, beside: Beside) -> Places | None:
+    """Return the positions of a variable from coordinates of its own axes, ``None`` without them."""
     dims, source = horizontal_dims(array), _source(array, beside.datasets)
     if len(dims) < 2:
         return None

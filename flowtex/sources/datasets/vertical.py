@@ -201,6 +201,7 @@ def _velocity(u: LazySteps, v: LazySteps, across: float, up: float, step: int) -
 
 
 def _axes(array: xr.DataArray, chosen: set[str]) -> tuple[str, str]:
+    """Return the names of the dimensions of levels and along a vertical section."""
     kinds = {str(dim): axes.axis_kind(array, str(dim)) for dim in array.dims}
     levels = [dim for dim, kind in kinds.items() if kind == axes.LEVEL]
     others = [

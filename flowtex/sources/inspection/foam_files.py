@@ -47,6 +47,7 @@ def check_foam(case: Path) -> None:
 
 
 def _check(path: Path, cells: AnyArray, least: int, faces: int) -> None:
+    """Raise a FieldError if a cell number is less than ``least`` or not less than ``faces``."""
     if not cells.size:
         return
     for cell in (int(cells.min()), int(cells.max())):

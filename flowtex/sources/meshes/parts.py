@@ -293,6 +293,7 @@ def _complete_masks(blocks: Parts) -> None:
 
 
 def _wrapped(source: Any, label: str) -> pv.DataObject:
+    """Return a mesh of VTK or meshio as a checked PyVista mesh; ``label`` names it in errors."""
     import pyvista as pv
 
     if type(source).__module__.startswith("meshio"):

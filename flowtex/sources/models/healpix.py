@@ -46,6 +46,7 @@ def _grid_attributes(datasets: Sequence[xr.Dataset]) -> dict[str, Any] | None:
 
 
 def _with_centres(ds: xr.Dataset, grid: Mapping[str, Any]) -> xr.Dataset:
+    """Return a dataset on a HEALPix grid with longitudes and latitudes of its cells."""
     dim = _cell_dimension(ds, grid)
     located = [name for name, a in ds.variables.items() if dim in a.dims]
     if not dim or any(LONGITUDE.match(str(name)) for name in located):

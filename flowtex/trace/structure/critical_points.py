@@ -529,6 +529,7 @@ def _ring_index(field: FlowField, point: CriticalPoint) -> int:
 
 
 def _with_strength(points: list[CriticalPoint], field: FlowField) -> list[CriticalPoint]:
+    """Return critical points with their strengths."""
     columns = field.shape[1]
     nodes = []
     for j, i in (field.surface.node_near(p.index) for p in points):
