@@ -122,7 +122,7 @@ def serve(
 
 
 def _secret_word(token: str | None, file: Path | None) -> str | None:
-    """Return the checked secret word: of the option, the file or the environment, ``None`` without."""
+    """Return the checked secret word of the option, the file or the environment, or ``None``."""
     word = os.environ.get(TOKEN_VARIABLE)
     readable = ""
     source = f"{TOKEN_VARIABLE} contains another text"

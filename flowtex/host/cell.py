@@ -121,7 +121,7 @@ def _display(shown: Any) -> None:
 
 
 def _display_still(shown: Any, name: str, *, update: bool = False) -> None:
-    """Display a still picture of widgets in the output of a cell, or replace the one of this name."""
+    """Display a still picture of widgets below a cell, or replace the one of this name."""
     from IPython.display import display
 
     keys = " ".join(widget._key for widget in _displayed_in(shown) if widget.comm is not None)

@@ -435,7 +435,7 @@ def json_text(value: object) -> str:
 def _packed(
     scenes: Sequence[ClientData], time: float | None, *, is_linked: bool
 ) -> Iterator[tuple[int, Header, str]]:
-    """Yield each part of a page: number of its scene, entry in the header, and text if it is new."""
+    """Yield each part of a page: number of its scene, header entry, and text if it is new."""
     written: dict[str, Header] = {}
     for n, scene in enumerate(scenes):
         names: set[str] = set()

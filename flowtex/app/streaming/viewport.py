@@ -479,7 +479,7 @@ def time_in(scene: Scene, field: FlowField) -> float:
 def _fitting(
     first: Scene, make: Callable[[dict[str, Any]], Scene], changes: dict[str, Any]
 ) -> Scene:
-    """Return the scene that ``make`` makes, without norm and limits if these do not fit its values."""
+    """Return the scene that ``make`` makes, without norm and limits if these do not fit."""
     try:
         return make(changes)
     except ValueError:

@@ -399,7 +399,7 @@ def _rank(u: xr.DataArray, source: str, rest: str) -> int | None:
 
 
 def _directions(u: xr.DataArray) -> str:
-    """Return ``"grid"`` or ``"earth"`` if attributes or names say how a component points, else ""."""
+    """Return ``"grid"`` or ``"earth"`` where attributes or names give directions, else ``""``."""
     relative = u.attrs.get("GRIB_uvRelativeToGrid")
     if relative is not None:
         return "grid" if int(relative) else "earth"

@@ -272,7 +272,7 @@ def _offset(at_u: Places, at_v: Places) -> tuple[float, float] | None:
 
 
 def _own_places(array: xr.DataArray, beside: Beside) -> Places | None:
-    """Return the positions of a variable from coordinates of its own axes, ``None`` without them."""
+    """Return the positions of a variable from its own coordinates, ``None`` without them."""
     dims, source = horizontal_dims(array), _source(array, beside.datasets)
     if len(dims) < 2:
         return None
