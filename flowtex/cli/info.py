@@ -187,6 +187,8 @@ def _array_table(summary: FileSummary) -> Table:
             parts = f" = {', '.join(array.parts)}"
         else:
             parts = ""
+        if array.since is not None:
+            parts = f", from t = {array.since:g}"
         if array.components > 1:
             magnitude = " (magnitude)"
         else:

@@ -26,6 +26,7 @@ from flowtex.sources.datasets.flow import read_flow
 from flowtex.sources.datasets.select import find_pairs, two_names, variable
 from flowtex.sources.maps import projection_of
 from flowtex.sources.meshes import parts
+from flowtex.sources.meshes.series import limited, wall_stress
 from flowtex.sources.meshes.vectors import candidates
 from flowtex.sources.notices import DatasetNotice, Record
 from flowtex.sources.opening.dataset_files import (
@@ -187,6 +188,9 @@ class MeshSource(FlowSource):
         self._velocity = velocity
         self._path = path
         self._block = block
+        #: Names of possible velocities that the first time lacks, and of the stress on a wall.
+        self._later: list[str] = []
+        self._stress: list[str] = []
         if isinstance(mesh, FlowField):
             self.name = name or mesh.name
             self.nbytes = mesh.nbytes
@@ -263,7 +267,7 @@ class MeshSource(FlowSource):
         return nullcontext()
 
     def _describe(self, mesh: Any) -> None:
-        self.vectors = self._names(mesh)
+        self.vectors = tuple(dict.fromkeys([*self._stress, *self._names(mesh), *self._later]))
         if parts.is_structured(mesh):
             i, j, k = map(int, mesh.dimensions)
             self.dimensions = i, j, k
@@ -304,6 +308,8 @@ class MeshSource(FlowSource):
         if blocks := {} if one else _choices(first, series=series):
             self.blocks = tuple(blocks)
             self.block_vectors = {name: self._names(grid) for name, grid in blocks.items()}
+            if series:
+                self._add_last(mesh)
             if not series:
                 self._mesh = first
                 self.nbytes = sum(map(_bytes, blocks.values()))
@@ -311,15 +317,27 @@ class MeshSource(FlowSource):
         steps: list[parts.TimeStep] = []
         for step in parts.time_steps(mesh if series else first, self._block):
             steps.append(step)
+            self._later += self._names(step.grid)
             self.nbytes += _bytes(step.grid)
             if self.nbytes > MAX_SERIES_BYTES:
                 return steps[0].grid
+        stress = wall_stress(iter(steps), Record())
+        if stress is not None:
+            self._stress = [stress]
         if len(steps) == 1:
             self._mesh = steps[0].grid
         else:
             self._mesh = steps
         self._block = None
         return steps[0].grid
+
+    def _add_last(self, reader: Any) -> None:
+        """Add the vectors that only the last time of blocks has."""
+        last = parts.parts_of(limited(reader, parts.times_of(reader)[-1:]).read())
+        for name, vectors in self.block_vectors.items():
+            if name in last:
+                every = dict.fromkeys([*vectors, *self._names(last[name])])
+                self.block_vectors[name] = tuple(every)
 
 
 def _choices(mesh: Any, *, series: bool) -> parts.Parts:

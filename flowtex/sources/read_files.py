@@ -350,6 +350,7 @@ class ArraySummary(NamedTuple):
     low: float
     high: float
     parts: tuple[str, ...] = ()
+    since: float | None = None  #: The first time that has it, if earlier ones lack it.
 
 
 class BlockSummary(NamedTuple):
@@ -395,6 +396,12 @@ def _summary(file: OpenFile, mesh: Any, block: int | str | None) -> FileSummary:
     )
     is_mesh = hasattr(part, "point_data")
     arrays, velocities = (catalogue(part), candidates(part)) if is_mesh else ([], [])
+    listed = [_array(part, a) for a in (*arrays, *(a for a in velocities if a.parts))]
+    if is_mesh:
+        path = next((name for name, each in found if each is part), None)
+        later = _later_arrays(file.source, path, listed)
+        listed += [summary for _, summary in later]
+        velocities += [array for array, _ in later if array.components > 1 and array.real]
     names = dict.fromkeys(a.name for a in velocities) if file.velocity is None else [file.velocity]
     times = parts.times_of(file.source)
     if isinstance(file.source, list):
@@ -413,12 +420,28 @@ def _summary(file: OpenFile, mesh: Any, block: int | str | None) -> FileSummary:
         bounds=tuple(zip(part.bounds[::2], part.bounds[1::2], strict=True)) if is_mesh else (),
         volume=is_mesh and part.max_cell_dimensionality == 3,
         blocks=tuple(blocks) if len(found) > 1 else (),
-        arrays=tuple(_array(part, a) for a in (*arrays, *(a for a in velocities if a.parts))),
+        arrays=tuple(listed),
         candidates=tuple(names),
         times=tuple(times),
         blanked=int(hidden_nodes(part).sum()) if is_mesh else 0,
         problem=file.problem or _problem(whole, file.velocity, series=len(times) > 1),
     )
+
+
+def _later_arrays(
+    source: Any, path: str | None, known: Sequence[ArraySummary]
+) -> list[tuple[MeshArray, ArraySummary]]:
+    """Return the arrays of a block that its first time lacks, of which most times are examined."""
+    if path is None or not parts.is_reader(source) or len(parts.times_of(source)) < 2:
+        return []
+    names = {(array.name, array.where) for array in known}
+    later = []
+    for step in parts.time_steps(series.examined(source), path):
+        for array in catalogue(step.grid):
+            if (array.name, array.where) not in names:
+                names.add((array.name, array.where))
+                later.append((array, _array(step.grid, array)._replace(since=step.time)))
+    return later
 
 
 def _problem(mesh: Any, vectors: str | None, *, series: bool) -> str:

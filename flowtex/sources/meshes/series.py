@@ -152,10 +152,11 @@ def having(steps: Iterator[TimeStep], vectors: str | None, record: Record) -> It
         return
     if not count:
         _refuse(first, vectors, len(lacking), times)
-    text = f"left out, as they have no array {vectors!r}"
+    lack = f"no array {vectors!r}"
     if vectors is None:
-        text = "left out, as they have no vectors that could be the velocity"
-    record("align", f"{listed(map(when, lacking))}: {text}", notable=True)
+        lack = "no vectors that could be the velocity"
+    times_without = listed(map(when, lacking))
+    record("align", f"{lack} at {times_without}, which is left out", notable=True)
 
 
 def _has(grid: Any, vectors: str | None) -> bool:

@@ -195,7 +195,7 @@ def test_wall_stress_that_the_first_time_lacks(tmp_path: Path) -> None:
     assert [str(notice.message) for notice in caught[:2]] == [
         '"U" is zero on this wall, so "wallShearStress" is drawn; to draw the other one, '
         'vectors="U"',
-        "time 0.5: left out, as they have no array 'wallShearStress'",
+        "no array 'wallShearStress' at time 0.5, which is left out",
     ]
     assert field.times.tolist() == [1.0]
     # The mean of the faces around each node, as PyVista computes it.
@@ -221,6 +221,22 @@ def test_wall_stress_that_the_first_time_lacks(tmp_path: Path) -> None:
         "(points, 3) at time 1, wallShearStress (cells, 3) at time 1"
     ):
         FlowField.from_file(path, block=walls, vectors="V")
+
+
+def test_arrays_of_later_times_are_listed(tmp_path: Path) -> None:
+    path = tmp_path / "case.foam"
+    write_foam(path)
+    stress = write_wall_stress(path)
+    summary = describe(path, block="boundary/walls")
+    assert summary.candidates == ("U", "wallShearStress")
+    (array,) = [a for a in summary.arrays if a.name == "wallShearStress" and a.where == "cells"]
+    assert array.since == 1.0
+    assert array.high == pytest.approx(np.linalg.norm(stress, axis=1).max())
+    source = MeshSource.from_file(path)
+    assert source.block_vectors["boundary/walls"] == ("U", "wallShearStress")
+    walls = source.part("boundary/walls")
+    assert walls.vectors == ("wallShearStress", "U")
+    assert walls.field().vectors == "wallShearStress"
 
 
 def test_openfoam_in_the_pieces_of_a_parallel_run(tmp_path: Path) -> None:
