@@ -49,6 +49,8 @@ FLAG = "flag"
 BAD_FLAGS = {FLAG: (1,), "flags": (1,), "mask": (1,), "Vector type": (0,)}
 #: Columns of OpenPIV.
 OPENPIV = ("x", "y", "u", "v", "flags", "mask")
+#: Those of its earlier versions, whose mask marks vectors that the validation rejected.
+OLD_OPENPIV = ("x", "y", "u", "v", "mask")
 
 
 @dataclass(frozen=True)
@@ -125,6 +127,8 @@ def _flags(header: str, columns: Iterable[str]) -> tuple[str, ...]:
         return ("Vector type",)
     if tuple(columns) == OPENPIV:
         return ("flags", "mask")
+    if tuple(columns) == OLD_OPENPIV:
+        return ("mask",)
     return ()
 
 

@@ -53,6 +53,21 @@ def openpiv(folder: Path) -> Made:
 
 @supported(
     KIND,
+    "OpenPIV, earlier versions: `x y u v mask`",
+    'flowtex.show("image.bmp.txt")',
+    "vectors with mask 1, which the validation rejected, are left out",
+)
+def early_openpiv(folder: Path) -> Made:
+    x, y, u, v = rows()
+    rejected = np.arange(len(x)) == 20
+    u[20] = 99.0
+    head = "# x\ty\tu\tv\tmask\n"
+    (folder / "image.bmp.txt").write_text(head + text((x, y, u, v, rejected), "\t"))
+    return {}, without(truth(), rejected)
+
+
+@supported(
+    KIND,
     "OpenPIV and others, without a header",
     'flowtex.show("piv.txt")',
     "columns are taken as x, y, u, v, and a flag or the ratio of signal to noise",
