@@ -73,7 +73,7 @@ def octahedral(rows: int) -> tuple[Any, Any]:
     KIND,
     "reduced Gaussian grids, such as octahedral ones of ECMWF",
     'flowtex.show("octahedral.nc", globe=True)',
-    "points along one dimension, joined by triangles, also over poles; GRIB likewise",
+    "points along one dimension, joined by triangles, also over poles",
 )
 def octahedral_file(folder: Path) -> Made:
     lon, lat = octahedral(32)
