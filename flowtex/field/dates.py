@@ -192,8 +192,12 @@ def span_since(start: Any, date: Any) -> tuple[float, float]:
     return begin, begin + (DAY_S if len(numbers) == 3 else 0)
 
 
+#: Names of the ends of a series, and their numbers.
+ENDS = {"first": 0, "last": -1}
+
+
 def time_within(start: Any, times: Any, date: Any) -> float:
-    """Return a time of a field from a number or date.
+    """Return a time of a field from a number, a date, ``"first"`` or ``"last"``.
 
     Parameters
     ----------
@@ -209,6 +213,8 @@ def time_within(start: Any, times: Any, date: Any) -> float:
     FieldError
         When the time is not from the first to the last one of the field, or cannot be read.
     """
+    if isinstance(date, str) and date in ENDS:
+        return float(times[ENDS[date]])
     time = seconds_since(start, date)
     if not float(times[0]) <= time <= float(times[-1]):
         raise FieldError(f"time is {date!r}; expected {expected_times(start, times)}")

@@ -174,6 +174,19 @@ def moves(steps: Steps) -> bool:
     return any(np.nan_to_num(steps[n]).any() for n in numbers)
 
 
+def first_moving(steps: Steps) -> int:
+    """Return the first step at which something moves, of lazy ones a typical one; 0 if none."""
+    numbers: Sequence[int] = range(len(steps))
+    if isinstance(steps, LazySteps):
+        numbers = typical_steps(len(steps))
+    if len(numbers) == 1:
+        return 0
+    for number in numbers:
+        if np.nan_to_num(steps[number]).any():
+            return number
+    return 0
+
+
 def map_steps(steps: Steps, function: Callable[[Floats], Floats]) -> Steps:
     """Apply a function to each step (J, I, ...) of an array; lazy steps are mapped when read."""
     if isinstance(steps, LazySteps):

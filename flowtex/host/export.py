@@ -440,7 +440,7 @@ def _packed(
     for n, scene in enumerate(scenes):
         names: set[str] = set()
         if is_linked:
-            parts = iter([first_parts(scene, scene.times[0] if time is None else time)])
+            parts = iter([first_parts(scene, scene.first_time if time is None else time)])
         else:
             steps = track(range(scene.steps), scene.steps, "Packing time steps")
             tiles = TileSource(scene, budget=0).tiles()

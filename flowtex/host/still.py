@@ -275,7 +275,7 @@ def draw_flow(
 ) -> tuple[Image.Image, Picture]:
     """Return a picture of the flow and the lines of its map, and the smaller one it is made of."""
     before, after, between = steps_around(
-        scene.times, float(scene.times[0] if time is None else time)
+        scene.times, float(scene.first_time if time is None else time)
     )
     steps = (scene.source(before), scene.source(after))
     picture = render(

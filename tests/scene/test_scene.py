@@ -81,3 +81,17 @@ def test_an_appearance_with_an_image_that_is_refused_changes_nothing(image: obje
     assert scene.appearance is before and scene.image is None and heard == []
     assert scene.field is shown
     assert scene.settings.noise == "procedural"
+
+
+def test_the_first_time_shown_is_when_something_moves() -> None:
+    velocity = np.ones((3, 4, 5, 2))
+    velocity[0] = 0.0
+    y, x = np.mgrid[:4.0, :5.0]
+    nodes = np.stack([x, y], axis=-1)
+    field = flowtex.FlowField.from_arrays(nodes, velocity, times=[0.0, 2.0, 5.0])
+    scene = Scene(field)
+    assert scene.time == 2.0
+    scene.time = "last"
+    assert scene.time == 5.0
+    scene.time = "first"
+    assert scene.time == 0.0

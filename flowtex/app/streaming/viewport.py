@@ -23,7 +23,7 @@ from flowtex._util.cache import WeakCache
 from flowtex.field import FlowField
 from flowtex.field.derived import steps_of
 from flowtex.field.interpolation import steps_around
-from flowtex.field.steps import LazySteps
+from flowtex.field.steps import LazySteps, first_moving
 from flowtex.plotting.handle import FlowHandle
 from flowtex.rendering.camera import Camera, apply_camera, face_alike
 from flowtex.rendering.vtk.area import PicturePart
@@ -458,10 +458,13 @@ def _time_beside(first: Scene, changes: Mapping[str, Any]) -> float:
 
 
 def first_time(scene: Scene, field: FlowField, *, keep: bool) -> float:
-    """Return the time at which another flow is shown first: its first, or the nearest to keep."""
-    first = float(field.times[0])
+    """Return the time at which another flow is shown first, or the nearest to keep.
+
+    That is the first time at which something moves.
+    """
     if not keep:
-        return first
+        return float(field.times[first_moving(field.velocity)])
+    first = float(field.times[0])
     return min(max(scene.time, first), float(field.times[-1]))
 
 

@@ -22,6 +22,7 @@ from flowtex._util.colours import CMAPS, ENTRIES, ColourScale, colour_table, is_
 from flowtex.field import FlowField
 from flowtex.field.formula import Formula
 from flowtex.field.interpolation import steps_around
+from flowtex.field.steps import first_moving
 from flowtex.rendering.camera import CAMERA_LIMITS, Camera, CameraValues
 from flowtex.rendering.shaders import shader_text
 from flowtex.rendering.tile_choice import CELL_PIXELS
@@ -156,6 +157,13 @@ class ClientData:
             return times[list(self.chosen)]
         return times
 
+    @property
+    def first_time(self) -> float:
+        """The time that is shown first: of those that are sent, the first when something moves."""
+        if self.chosen:
+            return float(self.times[0])
+        return float(self.times[first_moving(self.field.velocity)])
+
     def first_camera(self, aspect: float = FIRST_ASPECT) -> Camera:
         """Return the camera that shows the whole surface in a picture of a shape."""
         return Camera.fit(self.textures.geometry.field.surface, aspect)
@@ -173,7 +181,7 @@ class ClientData:
             **self.constants(),
             "settings": dict(settings) | {row["name"]: row["default"] for row in self._parameters},
             "camera": self.first_camera().to_dict() if camera is None else dict(camera),
-            "time": float(self.times[0] if time is None else time),
+            "time": float(self.first_time if time is None else time),
             "clock": float(clock),
         }
 

@@ -17,6 +17,7 @@ from typing import Any
 import numpy as np
 
 from flowtex.errors import FieldError
+from flowtex.field.dates import ENDS
 from flowtex.field.field_arrays import GridArrays, Reading, ReadingStep, TriangleArrays
 from flowtex.field.interpolation import at_moment, steps_around
 from flowtex.field.options import FieldOptions
@@ -31,8 +32,6 @@ WALL_STRESS = re.compile(r"(wall[ _.-]?)?shear[ _.-]?stress.*|skin[ _.-]?frictio
 MOST_LISTED = 8
 #: Most times whose arrays are listed before a field is read.
 MOST_EXAMINED = 16
-#: Names of the ends of a series, and their numbers.
-ENDS = {"first": 0, "last": -1}
 
 
 class SomeTimes:
