@@ -182,11 +182,14 @@ class NodeLines:
 def on_map(places: Places, name: str | None) -> MapNodes:
     """Put nodes on a map, by its name; by default a flat one that suits the region."""
     projection = projection_of(places, name)
-    is_flat, is_line, periodic = not projection.is_globe, places.is_line, None
+    is_flat = not projection.is_globe
+    is_line = places.is_line
+    periodic = None
     if is_line:
         lines = lines_on_map(places, projection)
         lon, lat = np.broadcast_arrays(lines.a, lines.b[:, None])
-        choices, periodic = [lines.chosen], lines.periodic
+        choices = [lines.chosen]
+        periodic = lines.periodic
     else:
         columns = np.arange(places.a.shape[1])
         if is_flat and find_closure(np.swapaxes(places.positions, 0, 1))[1] is not None:
@@ -194,7 +197,8 @@ def on_map(places: Places, name: str | None) -> MapNodes:
         choices = [Chosen(slice(None), columns)]
         # A node on the edge of a map lies on its western side.
         west = projection.center[0] - 180.0
-        lon, lat = west + (places.a[:, columns] - west) % 360.0, places.b[:, columns]
+        lon = west + (places.a[:, columns] - west) % 360.0
+        lat = places.b[:, columns]
     if not is_line or (is_flat and projection.family not in (*CYLINDERS, *POLAR_MAPS)):
         for axis in (1, 0):
             if (parts := _parts(projection, lon, lat, axis, is_line=is_line)) is not None:
@@ -205,9 +209,12 @@ def on_map(places: Places, name: str | None) -> MapNodes:
         return MapNodes(projection, points, choices, periodic, lon, lat)
     points = shown_positions(projection, lon, lat)
     if periodic is None:
-        steps = (np.abs(points[:, k] - points[:, 0]) for k in (1, -1))
-        step, ends = (float(np.nanmax(lengths, initial=0.0)) for lengths in steps)
-        periodic = "i" if ends <= SAME_LINE * step else ""
+        step = float(np.nanmax(np.abs(points[:, 1] - points[:, 0]), initial=0.0))
+        ends = float(np.nanmax(np.abs(points[:, -1] - points[:, 0]), initial=0.0))
+        if ends <= SAME_LINE * step:
+            periodic = "i"
+        else:
+            periodic = ""
     kept = shown_rows(points)
     choices.append(Chosen(kept, slice(None)))
     return MapNodes(projection, points[kept], choices, periodic, lon[kept], lat[kept])
@@ -280,7 +287,8 @@ def _has_edge(projection: Projection) -> bool:
         return projection.family not in (GLOBE, *POLAR_MAPS)
     lon = projection.center[0] + 180.0 + STEP * np.array([-2.0, -1.0, 1.0])
     before, across = np.diff(projection.positions(lon[:, None], EDGE_LATITUDES), axis=0)
-    before, across = (np.linalg.norm(step, axis=1) for step in (before, across))
+    before = np.linalg.norm(before, axis=1)
+    across = np.linalg.norm(across, axis=1)
     known = np.isfinite(across)
     return bool(known.any() and (across > 10 * before)[known].all())
 
@@ -402,17 +410,24 @@ def stretches(lon: Floats, lat: Floats, points: Floats, ends: Indices) -> tuple[
 def shown_rows(points: Floats) -> slice:
     """Return the rows of nodes (J, I, 3) on a map that it shows, from the first to the last."""
     rows = np.flatnonzero(np.isfinite(points[..., 0]).any(axis=1))
-    return slice(int(rows[0]), int(rows[-1]) + 1) if len(rows) else slice(0, len(points))
+    if len(rows):
+        return slice(int(rows[0]), int(rows[-1]) + 1)
+    return slice(0, len(points))
 
 
 def projection_of(places: Places, name: str | None) -> Projection:
     """Return the map of a name, or one that suits the region."""
     if name == GLOBE:
         return Projection(GLOBE)
-    lon, lat = places.lines if places.is_line else (places.a, places.b)
+    if places.is_line:
+        lon, lat = places.lines
+    else:
+        lon = places.a
+        lat = places.b
     middle, span = _middle(lon)
     around = span >= AROUND
-    low, high = float(np.nanmin(lat)), float(np.nanmax(lat))
+    low = float(np.nanmin(lat))
+    high = float(np.nanmax(lat))
     center = (0.0 if around else middle, 0.0 if around else (low + high) / 2)
     if name is None:
         lon = places.a
@@ -422,7 +437,12 @@ def projection_of(places: Places, name: str | None) -> Projection:
         has_pole = bool(abs(turn) > 180.0)  # inside the edge
         polar = not around or not places.is_line
         polar = polar and (abs(low + high) / 2 > POLAR or (low * high > 0 and has_pole))
-        name = FLAT if not polar else "north" if low + high > 0 else "south"
+        if not polar:
+            name = FLAT
+        elif low + high > 0:
+            name = "north"
+        else:
+            name = "south"
     projection = Projection(name, center, max((high - low) / 2, 1.0))
     if (origin := projection.origin) is not None:
         projection = replace(projection, center=(origin, center[1]))
@@ -454,7 +474,10 @@ def _middle(lon: Floats) -> tuple[float, float]:
     span = 360.0 - gaps[widest]
     # Scattered nodes have longitudes at all distances.
     scattered = len(values) > SCATTERED * lon.size
-    spacing = SPHERE_DEGREES / np.sqrt(lon.size) if scattered else 0.0
+    if scattered:
+        spacing = SPHERE_DEGREES / np.sqrt(lon.size)
+    else:
+        spacing = 0.0
     if gaps[widest] <= max(1.5 * typical, 2.0 * spacing, 1.0):
         return 0.0, 360.0
     middle = values[(widest + 1) % len(values)] + span / 2
@@ -477,7 +500,8 @@ class MeshMap:
 
     def at(self, values: Floats) -> Floats:
         """Return values (P,) from values at the nodes of the mesh, (N,)."""
-        one, other = values[self.nodes[:, 0]], values[self.nodes[:, 1]]
+        one = values[self.nodes[:, 0]]
+        other = values[self.nodes[:, 1]]
         return np.asarray((1 - self.share) * one + self.share * other)
 
     def components(self, values: Floats) -> Floats:
@@ -485,8 +509,10 @@ class MeshMap:
 
         Between two nodes vectors are interpolated in space, as near a pole directions differ.
         """
-        (one, other), share = self.nodes.T, self.share[:, None]
-        lon, lat = self.lon[: values.shape[1]], self.lat[: values.shape[1]]
+        (one, other) = self.nodes.T
+        share = self.share[:, None]
+        lon = self.lon[: values.shape[1]]
+        lat = self.lat[: values.shape[1]]
         globe = Projection(GLOBE)
         vectors = globe.vectors(lon, lat, *values)
         between_nodes = (1 - share) * vectors[one] + share * vectors[other]
@@ -507,7 +533,8 @@ def mesh_on_map(
     """
     projection = projection_of(places, name)
     numbers = np.arange(len(lon))
-    nodes, share = np.stack([numbers, numbers], axis=-1), np.zeros(len(numbers))
+    nodes = np.stack([numbers, numbers], axis=-1)
+    share = np.zeros(len(numbers))
     west = projection.center[0] - 180.0
     if projection.is_globe:
         points = projection.positions(lon, lat)
@@ -535,7 +562,8 @@ def mesh_on_map(
     points = shown_positions(projection, lon, lat)
     corners = points[triangles]
     area = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])[:, 2]
-    triangles, members = triangles[np.abs(area) > 0], members[np.abs(area) > 0]
+    triangles = triangles[np.abs(area) > 0]
+    members = members[np.abs(area) > 0]
     wide = stretches(lon, lat, points, _sides(triangles))[1].any(axis=1)
     count = int(lost.sum() + wide.sum())
     drawn = triangles[~wide], members[~wide]
@@ -565,7 +593,8 @@ def _cut(triangles: Indices, tear: Indices, pairs: Indices, first: int) -> tuple
     def beside(node: Indices, tear: Indices) -> Indices:
         return first + tear + len(pairs) * (pairs[tear, 1] == node)
 
-    far_b, far_c = beside(b, to_b), beside(c, to_c)
+    far_b = beside(b, to_b)
+    far_c = beside(c, to_c)
     parts = (a, beside(a, to_b), beside(a, to_c)), (far_b, b, c), (far_b, c, far_c)
     cut = [np.stack(part, axis=-1) for part in parts]
     numbers = [np.flatnonzero(~across), *[np.flatnonzero(across)] * 3]

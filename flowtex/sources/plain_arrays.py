@@ -71,7 +71,10 @@ def read_arrays(data: Any, options: FieldOptions, scalars: Mapping[str, Any]) ->
     _refuse_direction(options)
     if options.vectors is not None:
         raise FieldError(f"vectors is {options.vectors!r}, but the arrays have no names; omit it")
-    arrays = data if isinstance(data, tuple) else (data,)
+    if isinstance(data, tuple):
+        arrays = data
+    else:
+        arrays = (data,)
     return _field(read_plain(arrays), options, scalars)
 
 
@@ -79,7 +82,8 @@ def read_labelled(data: tuple[Any, ...], options: FieldOptions) -> FlowField:
     """Return the field of DataArrays ``u, v`` or ``x, y, u, v``, by their labels."""
     *places, u, v = data
     if None in (u.name, v.name) or u.name == v.name:
-        u, v = u.rename("u"), v.rename("v")
+        u = u.rename("u")
+        v = v.rename("v")
     ds = u.to_dataset().assign({v.name: v})
     for name, place in zip("xy", places, strict=False):
         ds = ds.assign_coords({place.name or name: place})
@@ -137,7 +141,11 @@ def _refuse_direction(options: FieldOptions) -> None:
 
 def _without(options: FieldOptions, name: str) -> dict[str, Any]:
     """Return the given options without one, which the caller applies."""
-    return {key: value for key, value in options.given.items() if key != name}
+    found = {}
+    for key, value in options.given.items():
+        if key != name:
+            found[key] = value
+    return found
 
 
 def _dataset(
@@ -152,7 +160,10 @@ def _dataset(
         raise FieldError(
             f"{len(points)} positions are given; expected two, longitude and latitude, or x and y"
         )
-    names = ("lon", "lat") if on_earth else ("x", "y")
+    if on_earth:
+        names = ("lon", "lat")
+    else:
+        names = ("x", "y")
     one, other = (with_gaps(name, part) for name, part in zip(names, points, strict=True))
     if flow.scattered:
         dims: tuple[str, ...] = ("point",)
@@ -185,7 +196,10 @@ def _table_of(points: xr.Dataset) -> Any:
     """Return points as a table, whose columns are named with their units."""
     columns = {}
     for name, array in points.reset_coords().items():
-        unit = array.attrs["units"] if array.attrs.get("units") else ""
+        if array.attrs.get("units"):
+            unit = array.attrs["units"]
+        else:
+            unit = ""
         columns[str(name)] = f"{name} [{unit}]" if unit else str(name)
     frame: Any = points.reset_coords().to_dataframe().reset_index(drop=True)
     return frame.rename(columns=columns)
@@ -243,7 +257,10 @@ def _by_position(places: list[Any], velocity: list[Any]) -> tuple[Any, ...]:
     """Return arrays in the form that the numbers of positions and components allow."""
     if len(velocity) == 2:
         return (*places[:2], *velocity)
-    joined = velocity[0] if len(velocity) == 1 else list(map(np.asanyarray, velocity))
+    if len(velocity) == 1:
+        joined = velocity[0]
+    else:
+        joined = list(map(np.asanyarray, velocity))
     if not places:
         return (joined,)
     return (tuple(places), joined)

@@ -75,7 +75,10 @@ def errors_of_file(path: str | Path) -> Iterator[None]:
     if cause is not None:
         reason = str(cause) or type(cause).__name__
         raise FieldError(f"{file}: cannot be read: {reason}") from cause
-    warnings = catcher.warning_events if catcher else []
+    if catcher:
+        warnings = catcher.warning_events
+    else:
+        warnings = []
     for warning in dict.fromkeys(_first_line(event.alert) for event in warnings):
         notify(f"{file}: VTK reports: {warning}", UserWarning)
 
@@ -194,10 +197,14 @@ def check_memory(nbytes: int, what: str) -> None:
 
 def size_text(nbytes: int) -> str:
     """Return a number of bytes as text, such as ``"1.5 GB"``."""
-    size, units = float(min(nbytes, 10**30)), ["bytes", "kB", "MB", "GB", "TB", "PB"]
+    size = float(min(nbytes, 10**30))
+    units = ["bytes", "kB", "MB", "GB", "TB", "PB"]
     while size >= 1000 and len(units) > 1:
-        size, units = size / 1000, units[1:]
-    return f"{size:.3g} {units[0]}" if size < 1000 else f"{size:.0f} {units[0]}"
+        size = size / 1000
+        units = units[1:]
+    if size < 1000:
+        return f"{size:.3g} {units[0]}"
+    return f"{size:.0f} {units[0]}"
 
 
 def values_in(array: Any) -> AnyArray:

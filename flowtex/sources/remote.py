@@ -75,11 +75,10 @@ class Reader:
                 value, arrays = action(**request)
         except (OSError, ImportError) as error:
             raise FieldError(str(error)) from error
-        warned = [
-            [warning.category.__name__, str(warning.message)]
-            for warning in caught
-            if issubclass(warning.category, UserWarning)
-        ]
+        warned = []
+        for warning in caught:
+            if issubclass(warning.category, UserWarning):
+                warned.append([warning.category.__name__, str(warning.message)])
         return {"value": value, "warnings": warned}, arrays
 
     def do_open(self, paths: list[str]) -> Answer:

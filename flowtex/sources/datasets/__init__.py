@@ -13,6 +13,9 @@ KINDS = (
 
 def is_dataset(data: object) -> bool:
     """Return whether data are one or several of :data:`KINDS`, without loading a library."""
-    items = data if isinstance(data, (list, tuple)) else [data]
+    if isinstance(data, (list, tuple)):
+        items = data
+    else:
+        items = [data]
     kinds = ((kind.__module__.partition(".")[0], kind.__name__) for kind in map(type, items))
     return bool(items) and all(kind in KINDS for kind in kinds)

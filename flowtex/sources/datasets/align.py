@@ -126,12 +126,16 @@ def common(
 
 def renamed(array: xr.DataArray, names: dict[str, str], like: xr.DataArray) -> xr.DataArray:
     """Return a variable with other names of dimensions, and the labels of another variable."""
-    dims = {one: other for one, other in names.items() if one != other}
+    dims = {}
+    for one, other in names.items():
+        if one != other:
+            dims[one] = other
     clash = [n for n in (*dims.values(), *names) if n in array.coords]
     array = array.drop_vars(clash).rename(dims)
-    lines = {
-        name: c for name, c in like.coords.items() if c.ndim == 1 and c.dims[0] in names.values()
-    }
+    lines = {}
+    for name, c in like.coords.items():
+        if c.ndim == 1 and c.dims[0] in names.values():
+            lines[name] = c
     return array.drop_vars([n for n in lines if n in array.coords]).assign_coords(lines)
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -55,7 +55,10 @@ class Choice:
     @classmethod
     def of(cls, options: FieldOptions) -> Choice:
         """Return the choices among options."""
-        level = {} if options.level is None else {LEVEL: options.level}
+        if options.level is None:
+            level = {}
+        else:
+            level = {LEVEL: options.level}
         return cls({**(options.sel or {}), **level}, dict(options.isel or {}))
 
     def check(self, names: set[str], drawn: set[str]) -> None:
@@ -109,11 +112,11 @@ class Drawn:
     @property
     def numbers(self) -> dict[str, int]:
         """Drawn numbers along axes with a choice, by name."""
-        return {
-            axis.dim if axis.kind == TIME else axis.kind: axis.drawn
-            for axis in self.axes
-            if isinstance(axis.drawn, int) and axis.line is not None and len(axis.line) > 1
-        }
+        found = {}
+        for axis in self.axes:
+            if isinstance(axis.drawn, int) and axis.line is not None and len(axis.line) > 1:
+                found[axis.dim if axis.kind == TIME else axis.kind] = axis.drawn
+        return found
 
     def of(self, array: xr.DataArray) -> xr.DataArray:
         """Return the same selection of another variable, ([time,] ...).
@@ -142,8 +145,12 @@ class Drawn:
 
 def _same_labels(array: xr.DataArray, dim: str, axis: Axis) -> int | list[int]:
     """Return where the drawn labels of an axis are along the same axis of another variable."""
-    own, count = line_of(array, dim), array.sizes[dim]
-    length = count if axis.line is None else len(axis.line)
+    own = line_of(array, dim)
+    count = array.sizes[dim]
+    if axis.line is None:
+        length = count
+    else:
+        length = len(axis.line)
     if own is None or axis.line is None:
         if count != length:
             raise FieldError(
@@ -157,7 +164,9 @@ def _same_labels(array: xr.DataArray, dim: str, axis: Axis) -> int | list[int]:
             f"{array.name} has {labels.text(own)} along {dim}, without {labels.text(wanted)}"
         )
     numbers = [int(n) for n in found.other]
-    return numbers if isinstance(axis.drawn, list) else numbers[0]
+    if isinstance(axis.drawn, list):
+        return numbers
+    return numbers[0]
 
 
 def as_slice(numbers: Sequence[int] | Indices) -> Indices | slice:
@@ -183,7 +192,8 @@ def horizontal_dims(array: xr.DataArray) -> tuple[str, ...]:
         return tuple(dims)
     # Where two axes remain they are those of the surface, also if they are called x and z.
     free = [d for d in dims if axis_kind(array, d) != TIME]
-    free = free if len(free) == 2 else dims
+    if len(free) != 2:
+        free = dims
     rows, columns = (
         [d for d in free if d in axes.get(kind, ())] or [d for d in free if pattern.match(d)]
         for kind, pattern in (("Y", ROWS), ("X", COLUMNS))
@@ -197,7 +207,9 @@ def horizontal_dims(array: xr.DataArray) -> tuple[str, ...]:
             return max(free), min(free)
         return free[0], free[1]
     pair = (rows or [dims[-2]])[-1], (columns or [dims[-1]])[-1]
-    return pair if pair[0] != pair[1] else (dims[-2], dims[-1])
+    if pair[0] != pair[1]:
+        return pair
+    return (dims[-2], dims[-1])
 
 
 def marked_axes(array: xr.DataArray) -> dict[str, list[str]]:
@@ -211,15 +223,23 @@ def marked_axes(array: xr.DataArray) -> dict[str, list[str]]:
 def axis_kind(array: xr.DataArray, dim: str) -> str:
     """Return ``"time"``, ``"level"``, or the name of another axis."""
     axes = marked_axes(array)
-    named = array.coords[dim].attrs if dim in array.coords else {}
+    if dim in array.coords:
+        named = array.coords[dim].attrs
+    else:
+        named = {}
     by_name = TIMES.match(dim) and not {*axes.get("X", ()), *axes.get("Y", ())} & {dim}
     if dim in axes.get("T", ()) or _dates(array, dim) is not None or by_name:
         return TIME
     vertical = axes.get("Z", [])
     if dim in vertical or LEVELS.match(dim) or named.get("standard_name") == "air_pressure":
         return LEVEL
-    on_axis = [name for name in vertical if array.coords[name].dims == (dim,)]
-    return LEVEL if on_axis else dim
+    on_axis = []
+    for name in vertical:
+        if array.coords[name].dims == (dim,):
+            on_axis.append(name)
+    if on_axis:
+        return LEVEL
+    return dim
 
 
 def further_axes(array: xr.DataArray) -> dict[str, str]:
@@ -256,7 +276,8 @@ def choose(array: xr.DataArray, choice: Choice, record: Record) -> Drawn:
             f"{array.name} has no values along {', '.join(empty)}; expected at least one. If "
             "they were cut out, the axis may run the other way: slice(high, low)"
         )
-    kinds, axes = further_axes(array), []
+    kinds = further_axes(array)
+    axes = []
     times: AnyArray | None = None
     level = unit = ""
     for kind, dim in kinds.items():
@@ -285,25 +306,32 @@ def _steps(
 ) -> tuple[AnyArray | None, str, int | list[int]]:
     """Return dates or numbers of the drawn steps, their unit, and their numbers, in order."""
     chosen = np.atleast_1d(drawn)
-    times, unit = line[chosen], ""
+    times = line[chosen]
+    unit = ""
     if times.dtype.kind in "fiu":
         unit = _unit(array, dim)
         if (seconds := units.factor(unit, "s")) is not None:
-            times, unit = times * seconds, "s"
+            times = times * seconds
+            unit = "s"
         elif unit and not units.measures(unit, units.TIMES):
             unit = ""
     elif times.dtype.kind not in "mMO":
         return None, "", drawn
-    unknown = np.asarray(times != times) if times.dtype.kind != "M" else np.isnat(times)
+    if times.dtype.kind != "M":
+        unknown = np.asarray(times != times)
+    else:
+        unknown = np.isnat(times)
     if unknown.any():
         record("align", f"{dim}: {unknown.sum()} steps without a time are left out", notable=True)
-    chosen, times = chosen[~unknown], times[~unknown]
+    chosen = chosen[~unknown]
+    times = times[~unknown]
     if not len(times):
         raise FieldError(f"{dim} has no valid time; expected dates or numbers")
     order = np.argsort(times, kind="stable")
     if (order != np.arange(len(order))).any():
         record("align", f"{dim}: steps sorted by time")
-    chosen, times = chosen[order], times[order]
+    chosen = chosen[order]
+    times = times[order]
     keep = np.concatenate([[True], times[1:] > times[:-1]])
     if not keep.all():
         record("align", f"{dim}: {(~keep).sum()} repeated times are left out", notable=True)
@@ -314,7 +342,9 @@ def _steps(
 def _level_text(value: Any, array: xr.DataArray, dim: str) -> str:
     """Return a level as text, with the name of its axis where it has no unit."""
     text = _value_text(value, array, dim)
-    return text if " " in text else f"{dim} {text}"
+    if " " in text:
+        return text
+    return f"{dim} {text}"
 
 
 def axis_values(array: xr.DataArray) -> dict[str, tuple[str, ...]]:
@@ -324,7 +354,11 @@ def axis_values(array: xr.DataArray) -> dict[str, tuple[str, ...]]:
         line = line_of(array, dim)
         if array.sizes[dim] < 2 or (kind == TIME and line is not None):
             continue
-        values = range(array.sizes[dim]) if line is None else line
+        values: Iterable[Any]
+        if line is None:
+            values = range(array.sizes[dim])
+        else:
+            values = line
         texts[dim if kind == TIME else kind] = tuple(_value_text(v, array, dim) for v in values)
     return dict(sorted(texts.items(), key=lambda item: item[0] != LEVEL))
 
@@ -332,7 +366,9 @@ def axis_values(array: xr.DataArray) -> dict[str, tuple[str, ...]]:
 def axis_direction(array: xr.DataArray, dim: str) -> int:
     """Return 1 where the coordinate of a dimension grows with its indices, or -1."""
     line = coordinate_of(array, dim)
-    return -1 if line is not None and line.dtype.kind in "fiu" and line[-1] < line[0] else 1
+    if line is not None and line.dtype.kind in "fiu" and line[-1] < line[0]:
+        return -1
+    return 1
 
 
 def _dates(array: xr.DataArray, dim: str) -> AnyArray | None:
@@ -365,8 +401,10 @@ def line_of(array: xr.DataArray, dim: str) -> AnyArray | None:
     coordinate = coordinate_of(array, dim)
     if coordinate is None:
         alike = [c for c in array.coords.values() if c.dims == (dim,)]
-        coordinate = alike[0] if len(alike) == 1 else None
-    return None if coordinate is None else np.asarray(coordinate.values)
+        if len(alike) != 1:
+            return None
+        coordinate = alike[0]
+    return np.asarray(coordinate.values)
 
 
 def _drawn(
@@ -429,7 +467,10 @@ def _nearest(target: Any, line: AnyArray, name: str, *, is_longitude: bool) -> i
     within = np.flatnonzero((at >= begin) & (at < end))
     if len(within):  # the first of a day, though it is at noon
         return int(within[0])
-    widest = float(np.abs(np.diff(at)).max()) if len(at) > 1 and np.isfinite(at).all() else 0.0
+    if len(at) > 1 and np.isfinite(at).all():
+        widest = float(np.abs(np.diff(at)).max())
+    else:
+        widest = 0.0
     off = np.abs(at - begin)
     if is_longitude:  # -30 and 330 are one
         off = np.minimum(off, np.abs(off - 360.0))
@@ -463,20 +504,26 @@ def _places(line: AnyArray, target: Any) -> tuple[Floats, tuple[float, float]]:
         return np.asarray(seconds), span_since(start, target)
     if line.dtype.kind not in "mfiu":
         return np.where(line == target, 0.0, np.inf), (0.0, 0.0)
-    at = line / np.timedelta64(1, "s") if line.dtype.kind == "m" else line.astype(float)
+    if line.dtype.kind == "m":
+        at = line / np.timedelta64(1, "s")
+    else:
+        at = line.astype(float)
     return at, (float(target),) * 2
 
 
 def _unit(array: xr.DataArray, dim: str) -> str:
     coordinate = coordinate_of(array, dim)
-    return "" if coordinate is None else str(coordinate.attrs.get("units", ""))
+    if coordinate is None:
+        return ""
+    return str(coordinate.attrs.get("units", ""))
 
 
 def _value_text(value: Any, array: xr.DataArray, dim: str) -> str:
     unit = _unit(array, dim)
     if not unit and dim in array.coords and axis_kind(array, dim) == LEVEL:
         unit = pressure_unit(array.coords[dim])
-    unit = "" if unit.lower() in units.NONE else unit
+    if unit.lower() in units.NONE:
+        unit = ""
     return f"{value_word(value)} {unit}".strip()
 
 

@@ -174,13 +174,20 @@ def _on_earth(
         at = _at_nodes(lon, lat, dims, shape, drawn)
         if at is None or (degrees := _in_degrees(*at, lon, lat)) is None:
             continue
-        turned = ", converted from radians" if degrees[0] is not at[0] else ""
+        if degrees[0] is not at[0]:
+            turned = ", converted from radians"
+        else:
+            turned = ""
         a, b = degrees
         if _is_one_place(a, b):  # as of an ideal case
             continue
-        unset = (a == 0) & (b == 0) if min(a.shape) > 1 else np.False_
+        if min(a.shape) > 1:
+            unset = (a == 0) & (b == 0)
+        else:
+            unset = np.False_
         if unset.sum() > 1:  # where a model leaves out land
-            a, b = np.where(unset, np.nan, a), np.where(unset, np.nan, b)
+            a = np.where(unset, np.nan, a)
+            b = np.where(unset, np.nan, b)
         is_line = lon.ndim == 1
         a, b = np.broadcast_arrays(np.unwrap(a, period=360.0) if is_line else a, b)
         why = f"{lon.name} and {lat.name}{turned}"
@@ -200,7 +207,8 @@ def _check_two_of_space(array: xr.DataArray, dims: tuple[str, ...]) -> None:
     others = [dim for dim in dims if dim not in times]
     if len(times) != 1 or len(others) != 1:
         return
-    time, space = times[0], others[0]
+    time = times[0]
+    space = others[0]
     raise FieldError(
         f"{array.name!r} has the axes {' and '.join(dims)}, time and one axis of space; expected "
         f"two axes of space. To draw the paths d{space}/d{time} = {array.name} of a Hovmöller "
@@ -222,12 +230,18 @@ def _even_cells(
     datasets: Sequence[xr.Dataset],
 ) -> Places | None:
     """Return places on cells whose sizes in m the attributes DX and DY of WRF give."""
-    sizes = [ds.attrs for ds in datasets if {"DX", "DY"} <= {*ds.attrs}]
+    sizes = []
+    for ds in datasets:
+        if {"DX", "DY"} <= {*ds.attrs}:
+            sizes.append(ds.attrs)
     if not sizes or not all(re.match("south_north|west_east", dim) for dim in dims):
         return None
     lines = []
     for dim, count, name in zip(dims, shape, ("DY", "DX"), strict=True):
-        side = 0.5 if dim.endswith("_stag") else 0.0
+        if dim.endswith("_stag"):
+            side = 0.5
+        else:
+            side = 0.0
         lines.append((np.arange(count) - side) * float(sizes[0][name]))
     b, a = np.meshgrid(*lines, indexing="ij")
     why = "cells of DX and DY, as longitude and latitude are the same everywhere"
@@ -251,7 +265,8 @@ def ordered(array: xr.DataArray, record: Record, step: str) -> xr.DataArray:
         if known.any() and not known.all():
             text = f"{array.name}: {(~known).sum()} of {known.size} {dim} are NaN, and left out"
             record(step, text, notable=True)
-            array, values = array.isel({dim: known}), values[known]
+            array = array.isel({dim: known})
+            values = values[known]
             line = array.coords[dim]
         if units.factor(str(line.attrs.get("units", "")), "degree") and LONGITUDE.match(dim):
             values = np.unwrap(values, period=360.0)
@@ -278,7 +293,8 @@ def ordered(array: xr.DataArray, record: Record, step: str) -> xr.DataArray:
 def _directions(p: Floats, axis: int) -> Floats:
     """Return unit differences of positions along an axis, one-sided beside unknown ones."""
     p = np.swapaxes(p, 0, axis)
-    ahead, behind = np.full_like(p, np.nan), np.full_like(p, np.nan)
+    ahead = np.full_like(p, np.nan)
+    behind = np.full_like(p, np.nan)
     behind[1:] = ahead[:-1] = p[1:] - p[:-1]
     both = np.where(np.isnan(ahead), behind, np.where(np.isnan(behind), ahead, ahead + behind))
     length = np.linalg.norm(both, axis=-1, keepdims=True)
@@ -317,7 +333,10 @@ def _pairs(
 
     def order(c: xr.DataArray) -> tuple[int, int, int]:
         letter = re.sub(r".*(lon|long|lam|x)_?", "", str(c.name).lower())
-        middle = MIDDLES.index(letter) if letter in MIDDLES else len(MIDDLES)
+        if letter in MIDDLES:
+            middle = MIDDLES.index(letter)
+        else:
+            middle = len(MIDDLES)
         # Positions in two dimensions come before lines that may be mere numbers of the nodes.
         kind = 1 if c.ndim == 1 else 0 if units.parsed(str(c.attrs.get("units", ""))) else 2
         return 0 if set(c.dims) <= set(dims) else 1, kind, middle if c.ndim > 1 else 0
@@ -337,10 +356,14 @@ def _at_nodes(
     """Return two coordinates at the nodes, of lines (1, I) and (J, 1); none for other nodes."""
     if a.ndim == 1 and b.ndim == 1:
         is_line = a.dims == (dims[1],) and b.dims == (dims[0],)
-        return (_numbers(a)[None], _numbers(b)[:, None]) if is_line else None
+        if is_line:
+            return (_numbers(a)[None], _numbers(b)[:, None])
+        return None
     at = [_drawn_positions(c, dims, drawn) for c in (a, b)]
     at = [c.transpose(*dims) if {*c.dims} == {*dims} else c for c in at]
-    return (_numbers(at[0]), _numbers(at[1])) if at[0].shape == at[1].shape == shape else None
+    if at[0].shape == at[1].shape == shape:
+        return (_numbers(at[0]), _numbers(at[1]))
+    return None
 
 
 def _drawn_positions(c: xr.DataArray, dims: tuple[str, ...], drawn: Drawn) -> xr.DataArray:
@@ -363,7 +386,10 @@ def _drawn_positions(c: xr.DataArray, dims: tuple[str, ...], drawn: Drawn) -> xr
 def _check_rest(c: xr.DataArray, dim: str) -> None:
     if c.sizes[dim] < 2:
         return
-    few = {d: slice(None, None, max(n // FEW_NODES, 1)) for d, n in c.sizes.items() if d != dim}
+    few = {}
+    for d, n in c.sizes.items():
+        if d != dim:
+            few[d] = slice(None, None, max(n // FEW_NODES, 1))
     lines = np.asarray(values_in(c.isel(few)), dtype=float)
     axis = c.dims.index(dim)
     first = np.take(lines, [0], axis=axis)
@@ -384,7 +410,8 @@ def _numbers(c: xr.DataArray) -> Floats:
 
 
 def _is_degrees(c: xr.DataArray) -> bool:
-    unit, name = str(c.attrs.get("units", "")), str(c.attrs.get("standard_name", c.name))
+    unit = str(c.attrs.get("units", ""))
+    name = str(c.attrs.get("standard_name", c.name))
     if name in ("grid_longitude", "grid_latitude"):  # of a rotated pole
         return False
     if units.is_angle(unit) and not (ANGLES.match(name) or AZIMUTHS.search(name)):
@@ -402,7 +429,10 @@ def _in_degrees(
     given = [str(c.attrs.get("units", "")) for c in (lon, lat)]
     # A line has values of one coordinate only.
     finite = np.isfinite(a), np.isfinite(b)
-    usable = (finite[0] & finite[1]).any() if lon.ndim > 1 else all(f.any() for f in finite)
+    if lon.ndim > 1:
+        usable = bool((finite[0] & finite[1]).any())
+    else:
+        usable = all(f.any() for f in finite)
     if not usable:
         raise FieldError(
             f"{lon.name} and {lat.name} are NaN everywhere; expected positions of the nodes"
@@ -434,7 +464,8 @@ def _own_line(array: xr.DataArray, dim: str, datasets: Sequence[xr.Dataset]) -> 
 
 def _of_lines(x: xr.DataArray, y: xr.DataArray) -> Places:
     """Return positions on axes of any name, such as x1 and x2, or of polar coordinates."""
-    a, b = _numbers(x)[None], _numbers(y)[:, None]
+    a = _numbers(x)[None]
+    b = _numbers(y)[:, None]
     for radius, angle, r, turn in ((x, y, a, b), (y, x, b, a)):
         named = str(angle.name), str(angle.attrs.get("standard_name", ""))
         is_azimuth = any(map(AZIMUTHS.search, named))
@@ -446,7 +477,10 @@ def _of_lines(x: xr.DataArray, y: xr.DataArray) -> Places:
         if is_azimuth:
             turn = np.pi / 2 - turn
         unit = str(radius.attrs.get("units", ""))
-        unit = units.symbol(unit) if units.parsed(unit) is not None else ""
+        if units.parsed(unit) is not None:
+            unit = units.symbol(unit)
+        else:
+            unit = ""
         a, b, turn = np.broadcast_arrays(r * np.cos(turn), r * np.sin(turn), turn)
         why = f"{radius.name} and {angle.name}"
         return Places(a, b, is_earth=False, is_line=False, why=why, unit=unit, angle=turn)
@@ -457,17 +491,20 @@ def _plane(
     x: xr.DataArray, y: xr.DataArray, a: Floats, b: Floats, crs: Mapping[str, Any] | None = None
 ) -> Places:
     """Return positions in a plane, or on the Earth if a grid mapping gives them."""
-    one, other = (str(c.attrs.get("units", "")).strip() for c in (x, y))
+    one = str(x.attrs.get("units", "")).strip()
+    other = str(y.attrs.get("units", "")).strip()
     why = f"{x.name} and {y.name}"
     if crs is not None:
         pyproj = import_extra("pyproj", "xarray")
         source = pyproj.CRS.from_cf(crs)
         geodetic = pyproj.CRS.from_user_input(source.geodetic_crs or 4326)
         if source.is_projected:
-            a, b = a * (units.factor(one, "m") or 1.0), b * (units.factor(other, "m") or 1.0)
+            a = a * (units.factor(one, "m") or 1.0)
+            b = b * (units.factor(other, "m") or 1.0)
         else:
             geodetic = pyproj.CRS.from_user_input("+proj=longlat +R=6371000 +type=crs")
-            a, b = (c * (units.factor(u, "degree") or 1.0) for c, u in ((a, one), (b, other)))
+            a = a * (units.factor(one, "degree") or 1.0)
+            b = b * (units.factor(other, "degree") or 1.0)
         change = pyproj.Transformer.from_crs(source, geodetic, always_xy=True)
         lon, lat = change.transform(*np.broadcast_arrays(a, b), errcheck=False)
         bad = ~(np.isfinite(lon) & np.isfinite(lat))
@@ -477,7 +514,10 @@ def _plane(
     if one != other and (factor := units.factor(other, one)) is not None:
         b = b * factor
     a, b = np.broadcast_arrays(a, b)
-    unit = units.symbol(one) if units.parsed(one) is not None else ""
+    if units.parsed(one) is not None:
+        unit = units.symbol(one)
+    else:
+        unit = ""
     return Places(a, b, is_earth=False, is_line=x.ndim == 1, why=why, unit=unit)
 
 
@@ -487,7 +527,9 @@ def _mapping_of_axes(text: str, dims: set[str]) -> str:
     for name, axes in parts:
         if dims & set(axes.split()):
             return str(name)
-    return str(parts[0][0]) if parts else text.strip()
+    if parts:
+        return str(parts[0][0])
+    return text.strip()
 
 
 def _mapping(array: xr.DataArray, datasets: Sequence[xr.Dataset]) -> dict[str, Any] | None:

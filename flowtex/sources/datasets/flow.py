@@ -116,10 +116,16 @@ def component_units(pair: Pair, record: Record) -> tuple[str, tuple[float, float
     if pair.kind in directions.ANGULAR:
         unit = select.velocity_unit(pair.u, any_kind=pair.named)
         return unit, (1.0, _angle_factor(pair, record))
-    one, other = (select.velocity_unit(a, any_kind=pair.named) for a in (pair.u, pair.v))
+    one = select.velocity_unit(pair.u, any_kind=pair.named)
+    other = select.velocity_unit(pair.v, any_kind=pair.named)
     if not one or not other:
         if one != other:
-            named, bare = (pair.u, pair.v) if one else (pair.v, pair.u)
+            if one:
+                named = pair.u
+                bare = pair.v
+            else:
+                named = pair.v
+                bare = pair.u
             text = f"{bare.name} has no unit; that of {named.name}, {one or other}, is assumed"
             record("units", text, notable=True)
         return one or other, (1.0, 1.0)
@@ -205,7 +211,8 @@ def _check_curved(flow: Flow, wanted: str | None) -> None:
 
 
 def _orientation(flow: Flow) -> Orientation:
-    pair, places = flow.pair, flow.places
+    pair = flow.pair
+    places = flow.places
     if pair.kind != directions.CARTESIAN:
         return Orientation("plane" if pair.kind == directions.POLAR else "earth", pair.why)
     if len(places.a) == 1 and places.is_earth:
@@ -270,7 +277,8 @@ class Flow:
         self.datasets.close()
         if self.mesh is not None:
             return np.stack(self.mesh.vectors_at_nodes(u, v, self.cells[0]))
-        u, v = u[self.trimmed], v[self.trimmed]
+        u = u[self.trimmed]
+        v = v[self.trimmed]
         if self.orientation.along == "grid" and not self.places.is_line:
             u, v = self.places.turned(self.ahead, u, v)
         return np.stack([u, v])
@@ -297,11 +305,16 @@ class Flow:
         if series and part.shape[0] != self.drawn.steps:
             return None
         if self.mesh is not None:
-            return part if {NODES, *self.cells} & set(surface) else None
+            if {NODES, *self.cells} & set(surface):
+                return part
+            return None
         if len(surface) < 2:
             return None
         at: list[Any] = []
-        period = 360.0 if self.places.is_earth else None
+        if self.places.is_earth:
+            period = 360.0
+        else:
+            period = None
         for n, (dim, cell) in enumerate(zip(surface, self.cells, strict=True)):
             line = coordinate_of(part, dim)
             is_line = line is not None and line.dtype.kind in "fiu" and self.places.is_line
@@ -316,12 +329,15 @@ class Flow:
                 return None
         if at:
             part = part.isel(dict(zip(surface, at, strict=False)))
-        return part if part.shape[-2:] == self.shape else None
+        if part.shape[-2:] == self.shape:
+            return part
+        return None
 
     @property
     def shape(self) -> tuple[int, ...]:
         """Number of all cells (J, I), before those without all sides are left out."""
-        u, v = self.pair.u, self.pair.v
+        u = self.pair.u
+        v = self.pair.v
         return u.sizes[horizontal_dims(u)[0]], v.sizes[horizontal_dims(v)[-1]]
 
 
@@ -349,13 +365,15 @@ def read_flow(data: Any, options: FieldOptions, record: Record) -> Flow:
     datasets, pair = _chosen(datasets, choice, options)
     record("select", f"velocity: {pair}", notable=pair.guessed)
     unit, factors = component_units(pair, record)
-    one, two = pair.u, pair.v
+    one = pair.u
+    two = pair.v
     mesh = find_mesh(datasets)
     if mesh is not None and len(horizontal_dims(one)) > 1:
         mesh = None
     mesh = _with_max_edge(mesh, options.max_edge)
     if mesh is None:
-        one, two = ordered(one, record, "coordinates"), ordered(two, record, "align")
+        one = ordered(one, record, "coordinates")
+        two = ordered(two, record, "align")
     elif (dims := {horizontal_dims(array) for array in (one, two)}) and len(dims) > 1:
         raise FieldError(
             f"{one.name!r} has {', '.join(map(str, one.dims))} and {two.name!r} "
@@ -363,7 +381,8 @@ def read_flow(data: Any, options: FieldOptions, record: Record) -> Flow:
         )
     one, two = align(one, two, choice, record)
     drawn = choose(one, choice, record)
-    one, two = drawn.of(one), drawn.of(two)
+    one = drawn.of(one)
+    two = drawn.of(two)
     if drawn.level:
         record("select", f"level: {drawn.level}", caption=drawn.level)
     pair = replace(pair, u=one, v=two)
@@ -392,7 +411,8 @@ def _chosen(datasets: Datasets, choice: Choice, options: FieldOptions) -> tuple[
     pair = select.with_directions(pair, options.components)
     if pair.kind == directions.SPHERICAL:
         datasets = Datasets(map(with_lonlat, datasets), datasets.closers, recognised=True)
-    one, two = (select.variable(datasets, str(part.name)) for part in (pair.u, pair.v))
+    one = select.variable(datasets, str(pair.u.name))
+    two = select.variable(datasets, str(pair.v.name))
     return datasets, replace(pair, u=one, v=two)
 
 
@@ -410,7 +430,8 @@ def _with_max_edge(mesh: Mesh | None, max_edge: float | str | None) -> Mesh | No
 
 def _check_surface(pair: Pair) -> None:
     """Raise for components that are not along the axes of their surface."""
-    u, v = pair.u, pair.v
+    u = pair.u
+    v = pair.v
     kinds = {dim: axis_kind(u, dim) for dim in horizontal_dims(u)}
     if LEVEL not in kinds.values() or len(kinds) < 2 or is_vertical(v):
         return
@@ -419,7 +440,10 @@ def _check_surface(pair: Pair) -> None:
         return
     on_earth = LONGITUDE.match(other) or LATITUDE.match(other)
     if on_earth or (pair.along == "earth" and coordinate_of(u, other) is not None):
-        along = u.name if LONGITUDE.match(other) else v.name
+        if LONGITUDE.match(other):
+            along = u.name
+        else:
+            along = v.name
         raise FieldError(
             f"{u.name} and {v.name} are horizontal, but the data are a vertical section along "
             f"{level} and {other}, where nothing is known of the vertical flow; name a vertical "
@@ -429,7 +453,8 @@ def _check_surface(pair: Pair) -> None:
 
 def _right_handed(flow: Flow) -> Flow:
     """Return a flow whose axes are those of its components, where the grid was turned over."""
-    ones, zeros = np.ones_like(flow.places.a), np.zeros_like(flow.places.a)
+    ones = np.ones_like(flow.places.a)
+    zeros = np.zeros_like(flow.places.a)
     across = flow.places.turned(flow.ahead, ones, zeros)
     upward = flow.places.turned(flow.ahead, zeros, ones)
     names = f"{flow.pair.u.name} and {flow.pair.v.name}"
@@ -470,12 +495,16 @@ def _is_turned(flow: Flow) -> bool:
 def _on_rows(pair: Pair, datasets: Datasets, drawn: Drawn, record: Record) -> Flow:
     beside = Beside(datasets, drawn, record)
     grid = find_grid(pair.u, pair.v, beside, along_earth=pair.along == "earth")
-    rows, columns = horizontal_dims(grid.u)[0], horizontal_dims(grid.v)[-1]
+    rows = horizontal_dims(grid.u)[0]
+    columns = horizontal_dims(grid.v)[-1]
     places = grid.places
     trimmed = unrepeated(places)
     places = places.part(trimmed)
     staggered = grid.rows is not None or grid.columns is not None
-    kind = "Arakawa C" if staggered else "both components at the same position"
+    if staggered:
+        kind = "Arakawa C"
+    else:
+        kind = "both components at the same position"
     kind += ", rows and columns" if places.is_line else ", curvilinear"
     record("coordinates", places.why)
     angle = None
@@ -502,8 +531,12 @@ def _on_rows(pair: Pair, datasets: Datasets, drawn: Drawn, record: Record) -> Fl
 
 def _on_faces(mesh: Mesh, pair: Pair, datasets: Datasets, drawn: Drawn, record: Record) -> Flow:
     (dim,) = horizontal_dims(pair.u)
-    is_earth, why = mesh.is_earth, mesh.coordinates
-    unit = "" if is_earth else mesh.unit
+    is_earth = mesh.is_earth
+    why = mesh.coordinates
+    if is_earth:
+        unit = ""
+    else:
+        unit = mesh.unit
     places = Places(mesh.a[None], mesh.b[None], is_earth, is_line=False, why=why, unit=unit)
     record("coordinates", why)
     record("surface", mesh.words, notable=mesh.kind == POINTS)
@@ -520,10 +553,14 @@ def _on_faces(mesh: Mesh, pair: Pair, datasets: Datasets, drawn: Drawn, record: 
 
 
 def _masked(flow: Flow, factors: tuple[float, float], wanted: Any) -> Flow:
-    record, axes = flow.record, flow.values.axes
+    record = flow.record
+    axes = flow.values.axes
     turn = 2 * np.pi / factors[1] * (1 + 1e-6)
     is_direction = flow.pair.kind in (directions.FROM, directions.TOWARDS)
-    limits = (-turn, turn) if is_direction and wanted is not False else None
+    if is_direction and wanted is not False:
+        limits = (-turn, turn)
+    else:
+        limits = None
     one = checked_component(flow.pair.u, factors[0], axes, wanted, record)
     two = checked_component(flow.pair.v, factors[1], axes, wanted, record, limits=limits)
     flow = replace(flow, values=replace(flow.values, components=(one, two)))
@@ -551,8 +588,11 @@ def _masked(flow: Flow, factors: tuple[float, float], wanted: Any) -> Flow:
 
 def _applied(flow: Flow, mask: Mask, part: xr.DataArray, wanted: Any) -> Mask | None:
     """Return a mask that hides what it means, turned if need be; ``None`` for one without use."""
-    axes, variable = flow.values.axes, part.variable
-    marks, values, moving = [], [], _first_moving(flow)
+    axes = flow.values.axes
+    variable = part.variable
+    marks = []
+    values = []
+    moving = _first_moving(flow)
     for at in examined(part, axes):
         bad = ~mask.is_data(read_step(variable, moving, at, axes=axes))
         if not flow.staggered:
@@ -564,7 +604,8 @@ def _applied(flow: Flow, mask: Mask, part: xr.DataArray, wanted: Any) -> Mask | 
             u = np.full(bad.shape, np.nan)
         marks.append(bad.ravel())
         values.append(u.ravel())
-    is_bad, u = np.concatenate(marks), np.concatenate(values)
+    is_bad = np.concatenate(marks)
+    u = np.concatenate(values)
     option = f"mask={part.name!r}"
     moves = np.nan_to_num(u) != 0
     if wanted is None and not mask.is_flag and _hides_the_flow(is_bad, moves):
@@ -590,7 +631,8 @@ def _applied(flow: Flow, mask: Mask, part: xr.DataArray, wanted: Any) -> Mask | 
 
 def _first_moving(flow: Flow) -> int:
     """Return the first examined step in which a component is not zero everywhere, else 0."""
-    part, axes = flow.values.components[0], flow.values.axes
+    part = flow.values.components[0]
+    axes = flow.values.axes
     for step in steps_to_examine(part.variable, axes):
         if np.nan_to_num(part.sample(step, axes)).any():
             return step

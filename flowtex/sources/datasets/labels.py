@@ -39,7 +39,10 @@ def match(one: AnyArray, other: AnyArray, period: float | None = None) -> Match:
         return Match(np.flatnonzero(found >= 0), found[found >= 0])
     a, b = numbers(one, other)
     dates = one.dtype.kind in "MO"
-    near = min(SAME_DATE_S, BLURRED * spacing(a)) if dates else tolerance(a, b)
+    if dates:
+        near = min(SAME_DATE_S, BLURRED * spacing(a))
+    else:
+        near = tolerance(a, b)
     distance, nearest = _nearest(a, b, period)
     same = np.flatnonzero(distance <= near)
     _, first = np.unique(nearest[same], return_index=True)
@@ -82,7 +85,9 @@ def numbers(one: AnyArray, other: AnyArray) -> tuple[Floats, Floats]:
 def spacing(line: Floats) -> float:
     """Return the least distance of different labels; infinite for one."""
     steps = np.diff(np.unique(line[np.isfinite(line)]))
-    return float(steps.min()) if len(steps) else np.inf
+    if len(steps):
+        return float(steps.min())
+    return np.inf
 
 
 def tolerance(a: Floats, b: Floats) -> float:
@@ -90,17 +95,22 @@ def tolerance(a: Floats, b: Floats) -> float:
     size = max(float(np.abs(line[np.isfinite(line)]).max(initial=0.0)) for line in (a, b))
     apart = min(spacing(a), spacing(b))
     rounding = 4.0 * float(np.finfo(np.float32).eps) * size
-    return max(SAME * apart, min(rounding, BLURRED * apart)) if np.isfinite(apart) else rounding
+    if np.isfinite(apart):
+        return max(SAME * apart, min(rounding, BLURRED * apart))
+    return rounding
 
 
 def _nearest(a: Floats, b: Floats, period: float | None) -> tuple[Floats, Indices]:
-    distance, nearest = np.full(len(a), np.inf), np.zeros(len(a), dtype=np.intp)
-    known, sought = np.flatnonzero(np.isfinite(b)), np.isfinite(a)
+    distance = np.full(len(a), np.inf)
+    nearest = np.zeros(len(a), dtype=np.intp)
+    known = np.flatnonzero(np.isfinite(b))
+    sought = np.isfinite(a)
     if len(known):
-        places, targets = (
-            x[:, None] if period is None else x[:, None] % period % period
-            for x in (b[known], a[sought])
-        )
+        places = b[known][:, None]
+        targets = a[sought][:, None]
+        if period is not None:
+            places = places % period % period
+            targets = targets % period % period
         tree: Any = scipy.spatial.cKDTree(places, boxsize=period)  # type: ignore[arg-type]
         distance[sought], found = tree.query(targets)
         nearest[sought] = known[found]
@@ -112,16 +122,24 @@ def text(line: Any) -> str:
     line = np.asarray(line)
     if line.size == 0:
         return "no values"
-    words = np.datetime_as_string(line, unit="auto") if line.dtype.kind == "M" else line
+    if line.dtype.kind == "M":
+        words = np.datetime_as_string(line, unit="auto")
+    else:
+        words = line
     if line.size < 4:
         return ", ".join(_word(value) for value in words)
     by = ""
     if line.dtype.kind in "fiu":
         steps = np.diff(line.astype(float))
         even = np.allclose(steps, steps[0], rtol=1e-3, atol=0)
-        by = f" by {abs(steps.mean()):.4g}" if even else ""
+        if even:
+            by = f" by {abs(steps.mean()):.4g}"
+        else:
+            by = ""
     return f"{_word(words[0])} to {_word(words[-1])}{by} ({line.size} values)"
 
 
 def _word(value: Any) -> str:
-    return f"{value:.6g}" if isinstance(value, (float, np.floating)) else str(value)
+    if isinstance(value, (float, np.floating)):
+        return f"{value:.6g}"
+    return str(value)

@@ -71,7 +71,8 @@ def _words(coordinate: xr.DataArray) -> str:
 
 
 def _is_at_sea(coordinate: xr.DataArray, velocity: xr.DataArray) -> bool:
-    declared, unit = (str(coordinate.attrs.get(n, "")) for n in ("standard_name", "units"))
+    declared = str(coordinate.attrs.get("standard_name", ""))
+    unit = str(coordinate.attrs.get("units", ""))
     if declared.startswith(("atmosphere", "air_")):
         return False
     if AT_SEA.search(declared) or units.factor(unit, "dbar") == 1.0:
@@ -111,10 +112,15 @@ def pressure_unit(coordinate: xr.DataArray) -> str:
         return ""
     standard = str(coordinate.attrs.get("standard_name", ""))
     named = PRESSURE_NAMES.match(str(coordinate.name)) or standard.endswith("_pressure")
-    unit = "hPa" if np.nanmax(np.abs(values), initial=0.0) <= MOST_HPA else "Pa"
+    if np.nanmax(np.abs(values), initial=0.0) <= MOST_HPA:
+        unit = "hPa"
+    else:
+        unit = "Pa"
     if named:
         return unit
     is_other = FOLLOWING.search(_words(coordinate)) or "positive" in coordinate.attrs
     usual = np.isin(values / (1.0 if unit == "hPa" else 100.0), USUAL_HPA)
     by_values = values.size > 1 and usual.mean() > 0.5 and values.max() >= 100
-    return unit if by_values and not is_other else ""
+    if by_values and not is_other:
+        return unit
+    return ""

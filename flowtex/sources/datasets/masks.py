@@ -213,7 +213,8 @@ def valid_range(array: xr.DataArray) -> tuple[float, float] | None:
         When the attributes are no numbers, or not as many as expected.
     """
     encoding = array.encoding
-    low, high = -np.inf, np.inf
+    low = -np.inf
+    high = np.inf
     whole = True
     for name, number in (("valid_range", 2), ("valid_min", 1), ("valid_max", 1)):
         numbers = declared_numbers(array, name)
@@ -224,8 +225,10 @@ def valid_range(array: xr.DataArray) -> tuple[float, float] | None:
                 f"{array.name} has {name} {array.attrs[name]!r}; expected {number} numbers. Set or "
                 f"delete it, as in del ds[{str(array.name)!r}].attrs[{name!r}]"
             )
-        low = numbers[0] if name != "valid_max" else low
-        high = numbers[-1] if name != "valid_min" else high
+        if name != "valid_max":
+            low = numbers[0]
+        if name != "valid_min":
+            high = numbers[-1]
         whole = whole and np.asarray(array.attrs[name]).dtype.kind in "iu"
     if not (np.isfinite(low) or np.isfinite(high)):
         return None
@@ -233,7 +236,8 @@ def valid_range(array: xr.DataArray) -> tuple[float, float] | None:
     packed = np.dtype(encoding.get("dtype", float)).kind in "iu"
     if packed and whole:
         # The range is in the unit of the packed numbers if it has their type.
-        scale, offset = encoding.get("scale_factor", 1.0), encoding.get("add_offset", 0.0)
+        scale = encoding.get("scale_factor", 1.0)
+        offset = encoding.get("add_offset", 0.0)
         ends = sorted(float(scale) * end + float(offset) for end in ends)
     rounding = 1e-6 * max(abs(end) for end in ends if np.isfinite(end))
     return ends[0] - rounding, ends[1] + rounding
@@ -277,10 +281,12 @@ def undeclared_fill(values: Floats) -> float | None:
     finite = np.ravel(values)
     if not finite.size:
         return None
-    least, most = float(finite.min()), float(finite.max())
+    least = float(finite.min())
+    most = float(finite.max())
     if not np.isfinite(least + most):
         finite = finite[np.isfinite(finite)]
-        least, most = float(finite.min(initial=0.0)), float(finite.max(initial=0.0))
+        least = float(finite.min(initial=0.0))
+        most = float(finite.max(initial=0.0))
     for value in sorted({least, most}, key=abs, reverse=True):
         is_huge = abs(value) >= _HUGE
         if not (is_huge or _USUAL.fullmatch(str(np.float32(value)))):
@@ -290,7 +296,8 @@ def undeclared_fill(values: Floats) -> float | None:
         rest = finite[~same]
         if not rest.size or count < max(2, min(_FEW, _SHARE * finite.size)):
             continue
-        low, high = min(float(rest.min()), 0.0), max(float(rest.max()), 0.0)
+        low = min(float(rest.min()), 0.0)
+        high = max(float(rest.max()), 0.0)
         distance = max(low - value, value - high)
         if distance > (high - low) * (_HUGE_RATIO if is_huge else _USUAL_RATIO):
             return value

@@ -30,7 +30,8 @@ def placed_on(ds: xr.Dataset, x: str | None, y: str | None) -> xr.Dataset:
             hint = near_names(name, map(str, ds.coords))
             raise FieldError(f"{argument} is {name!r}, which the data do not have; {hint}")
     _check_order(x, y)
-    across, upward = ds[x], ds[y]
+    across = ds[x]
+    upward = ds[y]
     are_lines = across.ndim == upward.ndim == 1 and across.dims != upward.dims
     if not are_lines and (across.ndim != 2 or {*across.dims} != {*upward.dims}):
         raise FieldError(

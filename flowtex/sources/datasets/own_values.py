@@ -51,7 +51,10 @@ def with_values(
         if values.shape == (len(data),):
             return data.assign(**{name: values})
         return data
-    items = list(data) if isinstance(data, (list, tuple)) else [data]
+    if isinstance(data, (list, tuple)):
+        items = list(data)
+    else:
+        items = [data]
     component = str(choose_pair(as_datasets(data), *two_names(vectors)).u.name)
     for number, item in enumerate(items):
         variable = getattr(item, "data_vars", {}).get(component)
@@ -60,7 +63,9 @@ def with_values(
         dims = _dims_of(variable, values.shape)
         if dims:
             items[number] = item.assign({name: (dims, values)})
-            return items if isinstance(data, (list, tuple)) else items[0]
+            if isinstance(data, (list, tuple)):
+                return items
+            return items[0]
     if len(items) > 1:
         raise FieldError(
             f"{argument} is an array of the shape {values.shape}, and no dataset has {component!r} "

@@ -88,10 +88,13 @@ def read_datasets(
         can be drawn.
     """
     options.refuse(OF_MESHES, "meshes, but this is a dataset")
-    projection, uncertainty, record = options.projection, options.uncertainty, Record()
+    projection = options.projection
+    uncertainty = options.uncertainty
+    record = Record()
     if options.globe and projection not in (None, GLOBE):
         raise FieldError(f"globe=True and projection={projection!r} are given; omit one of them")
-    projection = GLOBE if options.globe else projection
+    if options.globe:
+        projection = GLOBE
     u, v = select.two_names(options.vectors)
     datasets = as_datasets(data, record, Choice.of(options))
     with record.explain():
@@ -116,7 +119,10 @@ def read_datasets(
         words = _words(flow, scalars, name)
         by_regions = regions and flow.mesh is None and spread is None
         arrays: GridArrays | TriangleArrays | Regions | None
-        arrays = _regions(flow, scalars, projection, words) if by_regions else None
+        if by_regions:
+            arrays = _regions(flow, scalars, projection, words)
+        else:
+            arrays = None
         arrays = arrays or _whole(flow, scalars, projection, words, spread, uncertainty)
     record.notify()
     datasets.close()
@@ -144,7 +150,8 @@ def _whole(
     spread: Callable[[int], Floats] | None,
     uncertainty: Any,
 ) -> GridArrays | TriangleArrays:
-    count, record = flow.drawn.steps, flow.record
+    count = flow.drawn.steps
+    record = flow.record
     nodes, arguments = _placed(flow, projection)
     # Velocity and speed use the same components.
     read = LazySteps(count, flow.components, quick=flow.pair.u.chunks is None)
@@ -162,7 +169,10 @@ def _whole(
         arguments["velocity_unit"] = units.symbol(flow.unit)
     if nodes.projection is None:
         arguments["vectors"] = flow.name
-    scale = (units.factor(flow.unit, "m/s") or 1.0) if flat and flow.unit else 1.0
+    if flat and flow.unit:
+        scale = units.factor(flow.unit, "m/s") or 1.0
+    else:
+        scale = 1.0
     if spread is not None:
         extra[spread_name(uncertainty)] = LazySteps(count, spread).map(nodes.at)
     velocity = read.map(partial(_vectors, nodes, scale))
@@ -195,11 +205,15 @@ def _note_rest(read: LazySteps, flow: Flow) -> None:
 
 def _note_gaps(read: LazySteps, flow: Flow) -> None:
     """Record nodes that have data at some of the examined steps only."""
-    steps = examined_steps(len(read), read[0].size) if read.quick else []
+    if read.quick:
+        steps = examined_steps(len(read), read[0].size)
+    else:
+        steps = []
     known = [np.isfinite(read[n]).all(axis=0) for n in steps]
     if not known:
         return
-    always, ever = np.logical_and.reduce(known), np.logical_or.reduce(known)
+    always = np.logical_and.reduce(known)
+    ever = np.logical_or.reduce(known)
     lacking = ever & ~always
     if lacking.any():
         first = next(n for n, here in zip(steps, known, strict=True) if (ever & ~here).any())
@@ -212,23 +226,27 @@ def _averaged(
     datasets: Datasets, dim: str, record: Record, options: FieldOptions
 ) -> tuple[Flow, Callable[[int], Floats]]:
     """Return the mean over a dimension, and a reader of the spread."""
-    pair, choice = (
-        select.choose_pair(datasets, *select.two_names(options.vectors)),
-        Choice.of(options),
-    )
-    u, v, chosen = pair.u, pair.v, {**choice.sel, **choice.isel}
+    pair = select.choose_pair(datasets, *select.two_names(options.vectors))
+    choice = Choice.of(options)
+    u = pair.u
+    v = pair.v
+    chosen = {**choice.sel, **choice.isel}
     if dim in horizontal_dims(u) or dim not in {*u.dims} & {*v.dims}:
-        names = [str(d) for d in u.dims if d not in horizontal_dims(u)]
+        names = []
+        for d in u.dims:
+            if d not in horizontal_dims(u):
+                names.append(str(d))
         msg = f"uncertainty is {dim!r}, which is not a further axis of the data; "
         raise FieldError(msg + near_names(dim, names))
     if dim in chosen:
         raise FieldError(
             f"{dim} is {chosen[dim]!r}, but uncertainty is the spread over {dim}; omit one of them"
         )
-    members = [
-        read_flow(datasets, replace(options, isel={**choice.isel, dim: number}), record)
-        for number in range(u.sizes[dim])
-    ]
+    members = []
+    for number in range(u.sizes[dim]):
+        members.append(
+            read_flow(datasets, replace(options, isel={**choice.isel, dim: number}), record)
+        )
     sums = LazySteps(
         members[0].drawn.steps, partial(_sums, [member.components for member in members])
     )
@@ -247,7 +265,8 @@ def _averaged(
 
 def _placed(flow: Flow, projection: str | None) -> tuple[Placed, dict[str, Any]]:
     """Return the nodes of a flow on a map or in a plane, and arguments of its field."""
-    places, mesh = flow.places, flow.mesh
+    places = flow.places
+    mesh = flow.mesh
     if mesh is None:
         if not places.is_earth:
             return PlaneNodes(np.stack([places.a, places.b], axis=-1)), _units(flow)
@@ -264,13 +283,20 @@ def _placed(flow: Flow, projection: str | None) -> tuple[Placed, dict[str, Any]]
 
 def _units(flow: Flow) -> dict[str, str]:
     """Return the units of length and time of a flow, as arguments of its field."""
-    record, unit = flow.record, flow.unit
+    record = flow.record
+    unit = flow.unit
     names = f"{flow.pair.u.name} and {flow.pair.v.name}"
     times = flow.drawn.times
     is_date = times is not None and np.asarray(times).dtype.kind in "mMO"
-    time = "s" if is_date else flow.drawn.time_unit
+    if is_date:
+        time = "s"
+    else:
+        time = flow.drawn.time_unit
     if not flow.is_velocity:
-        length = "m" if flow.places.is_earth else flow.places.unit
+        if flow.places.is_earth:
+            length = "m"
+        else:
+            length = flow.places.unit
         return {"length_unit": length, "time_unit": time}
     if not flow.places.is_earth:
         length = flow.places.unit
@@ -293,7 +319,10 @@ def _regions(
     flow: Flow, scalars: Mapping[str, _Scalar], projection: str | None, words: dict[str, Any]
 ) -> Regions | None:
     """Return a dataset for reading by regions; ``None`` where it must be read as a whole."""
-    lines = None if flow.staggered else region_lines(flow.places, projection)
+    if flow.staggered:
+        lines = None
+    else:
+        lines = region_lines(flow.places, projection)
     if lines is None or min(lines.shape) < 2 or flow.values.angle is not None:
         return None
     times = flow.drawn.times
@@ -306,7 +335,8 @@ def _regions(
         words["units"]["speed"] = units.symbol(flow.unit) or "m/s"
     if lines.projection is None:
         words["vectors"] = f"{flow.pair.u.name}, {flow.pair.v.name}"
-    length, time = words["length_unit"], words["time_unit"]
+    length = words["length_unit"]
+    time = words["time_unit"]
     factor, words["time_unit"], own = units.velocity_units(length, time, flow.unit)
     words |= {"start": start, "velocity_unit": "" if flat else own}
     words["times"] = np.zeros(1) if seconds is None else np.asarray(seconds, dtype=float)

@@ -121,8 +121,13 @@ def choose_pair(
         return _with_direction(datasets, u, direction)
     pairs = find_pairs(datasets)
     if u is not None and v is not None:
-        one, other = (variable(datasets, name) for name in (u, v))
-        others = [a for ds in datasets for a in ds.data_vars.values() if _may_be_component(a)]
+        one = variable(datasets, u)
+        other = variable(datasets, v)
+        others = []
+        for ds in datasets:
+            for a in ds.data_vars.values():
+                if _may_be_component(a):
+                    others.append(a)
         pairs = [*pairs, *_speeds(others), *_curved(others)]
         found = next((p for p in pairs if (p.u.name, p.v.name) == (u, v)), None)
         return replace(found or _as_named(one, other), named=True)
@@ -182,7 +187,8 @@ def _as_named(one: xr.DataArray, other: xr.DataArray) -> Pair:
 
 
 def _is_angle(array: xr.DataArray) -> bool:
-    unit, name = str(array.attrs.get("units", "")), str(array.name)
+    unit = str(array.attrs.get("units", ""))
+    name = str(array.name)
     if units.parsed(unit) is not None:
         return units.is_angle(unit)
     return bool(ANGLES.search(name) or TURNS.search(name))
@@ -208,9 +214,11 @@ def two_names(vectors: str | None) -> tuple[str, str] | tuple[None, None]:
 
 def find_pairs(datasets: Sequence[xr.Dataset]) -> list[Pair]:
     """Return the pairs that may be a velocity, the likely ones first."""
-    arrays = [
-        array for ds in datasets for array in ds.data_vars.values() if _may_be_component(array)
-    ]
+    arrays = []
+    for ds in datasets:
+        for array in ds.data_vars.values():
+            if _may_be_component(array):
+                arrays.append(array)
     for partners in (PARTNERS, SECTION_PARTNERS):
         if pairs := _cartesian(arrays, partners):
             return sorted(pairs, key=_preference)
@@ -233,7 +241,10 @@ def _speeds(arrays: Sequence[xr.DataArray]) -> Iterator[Pair]:
     for speed in arrays:
         standard = str(speed.attrs.get("standard_name", speed.name))
         is_speed = SPEEDS.search(standard) and _is_velocity(speed) is not False
-        first = re.sub(r"_?speed$", "", standard) if "standard_name" in speed.attrs else ""
+        if "standard_name" in speed.attrs:
+            first = re.sub(r"_?speed$", "", standard)
+        else:
+            first = ""
         for turn in arrays if is_speed else ():
             named = str(turn.attrs.get("standard_name", turn.name))
             unit = str(turn.attrs.get("units", ""))
@@ -282,7 +293,8 @@ def other_velocities(datasets: Sequence[xr.Dataset], drawn: Pair) -> Iterator[st
     for ds in datasets:
         source = ds.encoding.get("source")
         if source is not None and source not in own and (pairs := find_pairs([ds])):
-            u, v = pairs[0].u.name, pairs[0].v.name
+            u = pairs[0].u.name
+            v = pairs[0].v.name
             yield (
                 f"{drawn.u.name} and {drawn.v.name} are drawn, and {u} and {v} of "
                 f"{Path(source).name} are not; draw these by themselves"
@@ -321,7 +333,10 @@ def _is_velocity(array: xr.DataArray) -> bool | None:
 
 
 def _may_be_component(array: xr.DataArray) -> bool:
-    fewest = 1 if _on_mesh(array) else 2
+    if _on_mesh(array):
+        fewest = 1
+    else:
+        fewest = 2
     named = f"{array.name} {array.attrs.get('standard_name', '')}"
     other = "bounds" in named or "_bnd" in named or MODIFIERS.search(named)
     other = other or PLACES.search(str(array.attrs.get("standard_name", "")))
@@ -337,7 +352,9 @@ def _text(array: xr.DataArray, source: str) -> str:
     """Return a name of a variable in small letters, its words parted by underscores."""
     text = str(array.name if source == "name" else array.attrs.get(source, ""))
     text = re.sub(r"[^0-9a-z]+", "_", text.lower()).strip("_")
-    return re.sub(r"_at_\w+_location$", "", text) if source == "standard_name" else text
+    if source == "standard_name":
+        return re.sub(r"_at_\w+_location$", "", text)
+    return text
 
 
 def _partners(
@@ -348,7 +365,10 @@ def _partners(
         yield "x", "velocity", KNOWN_NAMES[text]
     for word, other in partners.items():
         # A letter may be part of a name, as in uo, u10, UVEL or VSDX; in a text it is a word.
-        pattern = word if source == "name" else rf"(?<![a-z0-9]){word}(?![a-z0-9])"
+        if source == "name":
+            pattern = word
+        else:
+            pattern = rf"(?<![a-z0-9]){word}(?![a-z0-9])"
         for match in re.finditer(pattern, text):
             a, b = match.span()
             yield word, f"{text[:a]}_{text[b:]}".strip("_"), text[:a] + other + text[b:]
@@ -385,24 +405,36 @@ def _rank(u: xr.DataArray, source: str, rest: str) -> int | None:
     """Return the rank of a pair, 0 for the most likely velocity; ``None`` for other variables."""
     is_velocity = _is_velocity(u)
     if is_velocity is False:
-        return 6 if source == "standard_name" else None
+        if source == "standard_name":
+            return 6
+        return None
     text = _text(u, source)
     if source != "name":
         plain = re.sub(r"_*(eastward|zonal)_*", "_", text).strip("_")
         if plain in MAIN:
             return 0
-        return 1 if MOVING.search(text) else (4 if is_velocity else None)
+        if MOVING.search(text):
+            return 1
+        if is_velocity:
+            return 4
+        return None
     bare = BARE.match(rest) is not None
     if not bare and not is_velocity:
         return None
-    return 2 if not rest and bare else 3 if bare else 5
+    if not rest and bare:
+        return 2
+    if bare:
+        return 3
+    return 5
 
 
 def _directions(u: xr.DataArray) -> str:
     """Return ``"grid"`` or ``"earth"`` where attributes or names give directions, else ``""``."""
     relative = u.attrs.get("GRIB_uvRelativeToGrid")
     if relative is not None:
-        return "grid" if int(relative) else "earth"
+        if int(relative):
+            return "grid"
+        return "earth"
     described = " ".join(str(u.attrs.get(name, "")) for name in ("description", "long_name"))
     if TO_EARTH.search(described):
         return "earth"

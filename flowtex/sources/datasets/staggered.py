@@ -59,9 +59,11 @@ class Sides:
     def between(cls, cells: Floats, sides: Floats, period: float | None) -> Sides:
         """Return the sides of cells by the positions of both along their axis."""
         order = np.argsort(sides if period is None else sides % period, kind="stable")
-        line, at = sides[order], cells
+        line = sides[order]
+        at = cells
         if period is not None:
-            line, at = line % period, cells % period
+            line = line % period
+            at = cells % period
             line = np.concatenate([line[-1:] - period, line, line[:1] + period])
             order = np.concatenate([order[-1:], order, order[:1]])
         after = np.searchsorted(line, at)
@@ -89,15 +91,18 @@ def centred(
 ) -> tuple[Floats, Floats]:
     """Return components (J, I) in the middle of the cells that have all sides."""
     if columns is not None:
-        u, v = _mean(u, 1, columns), v[:, columns.cells]
+        u = _mean(u, 1, columns)
+        v = v[:, columns.cells]
     if rows is not None:
-        u, v = u[rows.cells], _mean(v, 0, rows)
+        u = u[rows.cells]
+        v = _mean(v, 0, rows)
     return u, v
 
 
 def _mean(values: Floats, axis: int, sides: Sides) -> Floats:
     """Return means of two sides at the known cells; a missing side, or NaN, is a wall."""
-    one, other = (np.take(values, part, axis=axis) for part in (sides.before, sides.after))
+    one = np.take(values, sides.before, axis=axis)
+    other = np.take(values, sides.after, axis=axis)
     mean = (np.nan_to_num(one) + np.nan_to_num(other)) / 2
     mean[np.isnan(one) & np.isnan(other)] = np.nan
     return np.asarray(mean)
@@ -112,7 +117,8 @@ def find_grid(u: xr.DataArray, v: xr.DataArray, beside: Beside, *, along_earth: 
         When the components differ in size or lie neither at the same places nor half a cell apart,
         or have no positions.
     """
-    dims, (datasets, _, record) = (horizontal_dims(u), horizontal_dims(v)), beside
+    dims = (horizontal_dims(u), horizontal_dims(v))
+    (datasets, _, record) = beside
     nemo = _nemo_places(u, v, beside, along_earth=along_earth)
     if nemo is not None:
         rows = Sides.counted(-1, v.sizes[dims[1][0]], v.sizes[dims[1][0]])
@@ -127,7 +133,10 @@ def find_grid(u: xr.DataArray, v: xr.DataArray, beside: Beside, *, along_earth: 
     if apart or (dims[0] != dims[1] and alike):
         at = [_own_places(array, beside) for array in (u, v)]
         # In one dataset, only positions on the Earth distinguish axes of other names.
-        known = [p for p in at if p is not None and (p.is_earth or apart)]
+        known = []
+        for p in at:
+            if p is not None and (p.is_earth or apart):
+                known.append(p)
         if len(known) == 2 and known[0].is_earth == known[1].is_earth:
             grid = _by_positions(u, v, known[0], known[1], record)
             if grid is not None:
@@ -167,7 +176,10 @@ def _at_true_cells(
 
 
 def _cell_places(u: xr.DataArray, cells: tuple[str, str], beside: Beside) -> Places:
-    other = [n for n, c in u.coords.items() if not {*c.dims} <= {*cells}]
+    other = []
+    for n, c in u.coords.items():
+        if not {*c.dims} <= {*cells}:
+            other.append(n)
     inside = u.drop_vars(other).isel({d: 0 for d in u.dims if d not in cells})
     return find_places(inside, cells, beside)
 
@@ -182,7 +194,10 @@ def _by_positions(
     rename = dict(zip(dims[1], dims[0], strict=True))
     if at_u.a.shape == at_v.a.shape:
         for flips in ((), (0,), (1,), (0, 1)):
-            turned = (np.flip(at_v.a, flips), np.flip(at_v.b, flips)) if flips else (at_v.a, at_v.b)
+            if flips:
+                turned = (np.flip(at_v.a, flips), np.flip(at_v.b, flips))
+            else:
+                turned = (at_v.a, at_v.b)
             offset = _offset(at_u, replace(at_v, a=turned[0], b=turned[1]))
             if offset is None or max(map(abs, offset)) > SAME_NODE:
                 continue
@@ -193,7 +208,14 @@ def _by_positions(
             return Grid(u, renamed(v, rename, u), at_u)
     offset = _offset(at_u, at_v)
     if offset is not None and all(abs(abs(part) - 0.5) < HALF for part in offset):
-        row, column = (-1 if offset[0] > 0 else 0), (0 if offset[1] > 0 else -1)
+        if offset[0] > 0:
+            row = -1
+        else:
+            row = 0
+        if offset[1] > 0:
+            column = 0
+        else:
+            column = -1
         rows = Sides.counted(row, at_v.a.shape[0], at_u.a.shape[0])
         count = at_u.a.shape[1]
         wraps = count == at_v.a.shape[1] and _wraps(at_u)
@@ -207,8 +229,12 @@ def _by_positions(
 
 def _by_lines(u: xr.DataArray, v: xr.DataArray, at_u: Places, at_v: Places, record: Record) -> Grid:
     dims = horizontal_dims(u), horizontal_dims(v)
-    period = 360.0 if at_u.is_earth else None
-    (a_u, b_u), (a_v, b_v) = at_u.lines, at_v.lines
+    if at_u.is_earth:
+        period = 360.0
+    else:
+        period = None
+    (a_u, b_u) = at_u.lines
+    (a_v, b_v) = at_v.lines
     matches = labels.match(b_u, b_v), labels.match(a_u, a_v, period)
     if all(len(found.one) for found in matches):
         for n, (one, other) in enumerate(((b_u, b_v), (a_u, a_v))):
@@ -221,7 +247,10 @@ def _by_lines(u: xr.DataArray, v: xr.DataArray, at_u: Places, at_v: Places, reco
                 text = f"{v.name}: {dims[1][n]} counted from the meridian of {u.name}"
                 record("align", text)
             elif (np.diff(kept.other) != 1).any():
-                word = "reversed" if (np.diff(kept.other) < 0).all() else "reordered"
+                if (np.diff(kept.other) < 0).all():
+                    word = "reversed"
+                else:
+                    word = "reordered"
                 record("align", f"{v.name}: {dims[1][n]} {word} to match {u.name}")
         u = u.isel({d: as_slice(found.one) for d, found in zip(dims[0], matches, strict=True)})
         v = v.isel({d: as_slice(found.other) for d, found in zip(dims[1], matches, strict=True)})
@@ -230,7 +259,8 @@ def _by_lines(u: xr.DataArray, v: xr.DataArray, at_u: Places, at_v: Places, reco
         v = renamed(v, dict(zip(dims[1], dims[0], strict=True)), u)
         return Grid(u, v, places)
     if labels.is_between(b_u, b_v) and labels.is_between(a_v, a_u, period):
-        rows, columns = Sides.between(b_u, b_v, None), Sides.between(a_v, a_u, period)
+        rows = Sides.between(b_u, b_v, None)
+        columns = Sides.between(a_v, a_u, period)
         if len(rows.cells) and len(columns.cells):
             a, b = np.broadcast_arrays(a_v, b_u[:, None])
             middle = replace(at_u, a=a, b=b, why=f"{at_u.why}, at the cell centres")
@@ -254,11 +284,15 @@ def _apart(u: xr.DataArray, v: xr.DataArray, at_u: Places, at_v: Places) -> str:
 
 def _offset(at_u: Places, at_v: Places) -> tuple[float, float] | None:
     """Return by how many rows and columns places lie behind others, if by the same everywhere."""
-    rows, columns = (min(pair) for pair in zip(at_u.a.shape, at_v.a.shape, strict=True))
+    rows = min((at_u.a.shape[0], at_v.a.shape[0]))
+    columns = min((at_u.a.shape[1], at_v.a.shape[1]))
     if min(rows, columns) < 2:
         return None
-    p, q = (at.positions[:rows, :columns] for at in (at_u, at_v))
-    along, up, way = p[:-1, 1:] - p[:-1, :-1], p[1:, :-1] - p[:-1, :-1], (q - p)[:-1, :-1]
+    p = at_u.positions[:rows, :columns]
+    q = at_v.positions[:rows, :columns]
+    along = p[:-1, 1:] - p[:-1, :-1]
+    up = p[1:, :-1] - p[:-1, :-1]
+    way = (q - p)[:-1, :-1]
     basis = np.stack([up, along], axis=-1)
     square = np.swapaxes(basis, -1, -2) @ basis
     right = (np.swapaxes(basis, -1, -2) @ way[..., None])[..., 0]
@@ -268,12 +302,19 @@ def _offset(at_u: Places, at_v: Places) -> tuple[float, float] | None:
         return None
     cells = np.linalg.solve(square[good], right[good][..., None])[..., 0]
     low, middle, high = np.percentile(cells, (5, 50, 95), axis=0)
-    return (float(middle[0]), float(middle[1])) if (high - low).max() < HALF else None
+    if (high - low).max() < HALF:
+        return (float(middle[0]), float(middle[1]))
+    return None
 
 
 def _own_places(array: xr.DataArray, beside: Beside) -> Places | None:
+<<<<<<< HEAD
     """Return the positions of a variable from its own coordinates, ``None`` without them."""
     dims, source = horizontal_dims(array), _source(array, beside.datasets)
+=======
+    dims = horizontal_dims(array)
+    source = _source(array, beside.datasets)
+>>>>>>> fb49766a (Write one thought per line in the readers)
     if len(dims) < 2:
         return None
     own = {str(name): {*c.dims} for name, c in source.variables.items()}
@@ -291,7 +332,8 @@ def _source(array: xr.DataArray, datasets: Sequence[xr.Dataset]) -> xr.Dataset:
 
 def _check_sides(u: xr.DataArray, v: xr.DataArray) -> None:
     """Raise if names such as eta_psi say that u lies on sides along a column, and v along a row."""
-    (row_u, column_u), (row_v, column_v) = horizontal_dims(u), horizontal_dims(v)
+    (row_u, column_u) = horizontal_dims(u)
+    (row_v, column_v) = horizontal_dims(v)
     in_middle = all(map(MIDDLE_DIM.search, (column_u, row_v)))
     if not in_middle or any(map(MIDDLE_DIM.search, (row_u, column_v))):
         return
@@ -305,8 +347,10 @@ def _check_sides(u: xr.DataArray, v: xr.DataArray) -> None:
 
 
 def _by_names(u: xr.DataArray, v: xr.DataArray, cells: tuple[str, str], beside: Beside) -> Grid:
-    (row_u, column_u), (row_v, column_v) = horizontal_dims(u), horizontal_dims(v)
-    rows, columns = (v.sizes[row_v], u.sizes[row_u]), (u.sizes[column_u], v.sizes[column_v])
+    (row_u, column_u) = horizontal_dims(u)
+    (row_v, column_v) = horizontal_dims(v)
+    rows = (v.sizes[row_v], u.sizes[row_u])
+    columns = (u.sizes[column_u], v.sizes[column_v])
     if any(abs(sides - middle) > 1 for sides, middle in (rows, columns)):
         raise FieldError(
             f"{u.name} has {dict(u.sizes)} and {v.name} {dict(v.sizes)}; they differ by more than "
@@ -336,7 +380,8 @@ def _moved(places: Places, sides: Sides, count: int) -> Places:
         lonlat = Projection(GLOBE).lonlat(_mean(places.positions, 1, sides))
     else:
         lonlat = _mean(places.a, 1, sides), _mean(places.b, 1, sides)
-    a, b = (np.full((places.a.shape[0], count), np.nan) for _ in range(2))
+    a = np.full((places.a.shape[0], count), np.nan)
+    b = np.full((places.a.shape[0], count), np.nan)
     a[:, sides.cells], b[:, sides.cells] = lonlat
     why = f"{places.why}, at the cell centres"
     return replace(places, a=a, b=b, is_line=False, why=why, angle=None)
@@ -346,7 +391,8 @@ def _nemo_places(
     u: xr.DataArray, v: xr.DataArray, beside: Beside, *, along_earth: bool
 ) -> Places | None:
     """Return the places of NEMO's T points, where the components lie on the sides of cells."""
-    dims, datasets = horizontal_dims(u), beside.datasets
+    dims = horizontal_dims(u)
+    datasets = beside.datasets
     if dims != horizontal_dims(v) or u.shape != v.shape:
         return None
     names = {str(n) for ds in datasets for n in ds.variables}
@@ -371,7 +417,8 @@ def _wraps(places: Places, axis: int = 1) -> bool:
     p = places.positions
     if axis == 0:
         p = np.swapaxes(p, 0, 1)
-    step, gap = (np.linalg.norm(a, axis=-1) for a in (p[:, 1] - p[:, 0], p[:, 0] - p[:, -1]))
+    step = np.linalg.norm(p[:, 1] - p[:, 0], axis=-1)
+    gap = np.linalg.norm(p[:, 0] - p[:, -1], axis=-1)
     with np.errstate(invalid="ignore"):
         near = gap <= 1.5 * step
     finite = np.isfinite(gap) & np.isfinite(step) & (step > 0)
@@ -412,22 +459,35 @@ def first_side(
     """Return the number of the side before the first cell, for dimensions of this many of each."""
     sides, cells = counts
     if sides != cells:
-        return 0 if sides > cells else -1
+        if sides > cells:
+            return 0
+        return -1
     sgrid = re.compile(rf"\b{re.escape(cell)}:\s*{re.escape(side)}\s*\(padding:\s*(\w+)\)")
     for ds in datasets:  # by COMODO, or by SGRID
-        shift = ds[side].attrs.get("c_grid_axis_shift") if side in ds.variables else None
+        if side in ds.variables:
+            shift = ds[side].attrs.get("c_grid_axis_shift")
+        else:
+            shift = None
         if shift is not None:
-            return 0 if float(shift) < 0 else -1
+            if float(shift) < 0:
+                return 0
+            return -1
         for variable in ds.variables.values():
             is_grid = variable.attrs.get("cf_role") == "grid_topology"
             if is_grid and (match := sgrid.search(" ".join(map(str, variable.attrs.values())))):
-                return -1 if match[1] in ("low", "both") else 0
+                if match[1] in ("low", "both"):
+                    return -1
+                return 0
     lines = [_line(name, datasets) for name in (side, cell)]
     if lines[0] is not None and lines[1] is not None:
         rising = lines[1][-1] > lines[1][0]
-        return 0 if (lines[0][0] < lines[1][0]) == rising else -1
+        if (lines[0][0] < lines[1][0]) == rising:
+            return 0
+        return -1
     # MITgcm counts the side on the left of a cell, and most others the one on its right.
-    return 0 if re.search(r"g$|_l(eft)?$", side, re.IGNORECASE) else -1
+    if re.search(r"g$|_l(eft)?$", side, re.IGNORECASE):
+        return 0
+    return -1
 
 
 def _line(name: str, datasets: Sequence[xr.Dataset]) -> Floats | None:
@@ -436,5 +496,7 @@ def _line(name: str, datasets: Sequence[xr.Dataset]) -> Floats | None:
             values = np.asarray(values_in(ds[name]), dtype=float)
             # Mere indices of the nodes are not coordinates.
             is_index = np.array_equal(values, np.arange(len(values)) + values[0])
-            return None if is_index and not ds[name].attrs.get("units") else values
+            if is_index and not ds[name].attrs.get("units"):
+                return None
+            return values
     return None

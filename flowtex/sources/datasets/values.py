@@ -61,7 +61,10 @@ def numbers_in(array: xr.DataArray | xr.Variable) -> Floats:
 
 def read_step(variable: xr.Variable, step: int, lines: Chosen = None, *, axes: int = 2) -> Floats:
     """Return a step of a variable ([time], ...) with this many axes, or some rows and columns."""
-    part = variable[step] if variable.ndim > axes else variable
+    if variable.ndim > axes:
+        part = variable[step]
+    else:
+        part = variable
     if lines is None:
         return numbers_in(part)
     below = []
@@ -162,11 +165,16 @@ def examined(array: xr.DataArray | xr.Variable, axes: int) -> list[Any]:
     shape = array.shape[-axes:]
     if axes == 1 or np.prod(shape, dtype=float) <= MOST_EXAMINED:
         return [None]
-    lines = [
-        [np.arange(n)[max(first, 0) :][:PART_LINES] for first in (0, n // 2, n - PART_LINES)]
-        for n in shape
-    ]
-    return [(rows, columns) for rows in lines[0] for columns in lines[1]]
+    lines = []
+    for n in shape:
+        lines.append(
+            [np.arange(n)[max(first, 0) :][:PART_LINES] for first in (0, n // 2, n - PART_LINES)]
+        )
+    found = []
+    for rows in lines[0]:
+        for columns in lines[1]:
+            found.append((rows, columns))
+    return found
 
 
 @dataclass(frozen=True, eq=False)
@@ -190,7 +198,8 @@ class Values:
         u, v = centred(u, v, self.rows, self.columns)
         if staggered:  # near a wall only one of them may be known
             missing = np.isnan(u) & np.isnan(v)
-            u, v = (np.where(missing, np.nan, np.nan_to_num(part)) for part in (u, v))
+            u = np.where(missing, np.nan, np.nan_to_num(u))
+            v = np.where(missing, np.nan, np.nan_to_num(v))
         if self.swapped:
             u, v = v, u
         u, v = in_components(self.kind, u, v, self.angle)
@@ -207,7 +216,9 @@ class Values:
         """Return values in the middle of all cells where these have all sides."""
         if self.rows is not None:
             values = values[self.rows.cells]
-        return values if self.columns is None else values[:, self.columns.cells]
+        if self.columns is None:
+            return values
+        return values[:, self.columns.cells]
 
 
 @dataclass(frozen=True, eq=False)
@@ -225,7 +236,9 @@ class Regions:
         """Names of the scalars, among them the speed on the Earth."""
         projection = self.lines.projection
         drawn = projection is not None and not projection.is_globe
-        return (*self.scalars, "speed") if drawn else tuple(self.scalars)
+        if drawn:
+            return (*self.scalars, "speed")
+        return tuple(self.scalars)
 
     def nodes(self, step: int, rows: Lines, columns: Lines, valid: Bools | None = None) -> Nodes:
         """Read some rows and columns at a time step; ``valid`` is that of all, if known."""
@@ -262,7 +275,9 @@ class Regions:
     def _between(self, read: Callable[[Any], Any], rows: Lines, columns: Lines) -> list[Floats]:
         """Return what is read of some rows and columns; those on the edge of a map lie between."""
         lines = self.lines
-        chosen, numbers, share = lines.rows[rows], lines.columns[:, columns], lines.share[columns]
+        chosen = lines.rows[rows]
+        numbers = lines.columns[:, columns]
+        share = lines.share[columns]
         parts = list(read((chosen, numbers[0])))
         if (moved := np.flatnonzero(share)).size:
             others = read((chosen, numbers[1][moved]))

@@ -54,7 +54,10 @@ def is_section(datasets: Sequence[xr.Dataset], u: str, v: str) -> bool:
     array = variable(datasets, v)
     if not is_vertical(array) or are_partners(u, v):
         return False
-    named = [c for c in array.coords.values() if c.dims and c.attrs.get("units")]
+    named = []
+    for c in array.coords.values():
+        if c.dims and c.attrs.get("units"):
+            named.append(c)
     return bool(named) or "standard_name" in array.attrs
 
 
@@ -144,7 +147,10 @@ def read_section(
 def _flat(array: xr.DataArray, level: str, along: str) -> xr.DataArray:
     """Return a variable whose rows and columns are levels and places along a section."""
     names = {level: axes.SECTION[0], along: axes.SECTION[1]}
-    dropped = [name for name in array.coords if {level, along} & set(array[name].dims)]
+    dropped = []
+    for name in array.coords:
+        if {level, along} & set(array[name].dims):
+            dropped.append(name)
     return array.drop_vars(dropped).swap_dims(names).transpose(..., *axes.SECTION)
 
 
@@ -172,7 +178,8 @@ def _others(
 def _at_labels(array: xr.DataArray, like: xr.DataArray, dims: tuple[str, str]) -> xr.DataArray:
     """Return a variable at the labels of another one; a FieldError if it lacks some."""
     for dim in dims:
-        own, wanted = axes.line_of(array, dim), axes.line_of(like, dim)
+        own = axes.line_of(array, dim)
+        wanted = axes.line_of(like, dim)
         numbers = np.arange(array.sizes[dim])
         if own is not None and wanted is not None:
             numbers = labels.match(wanted, own).other
@@ -196,7 +203,8 @@ def _step(part: Component, close: Callable[[], None], step: int) -> Floats:
 
 def _velocity(u: LazySteps, v: LazySteps, across: float, up: float, step: int) -> Floats:
     """Return vectors, (J, I, 3), of components in units of the axes per second."""
-    a, b = u.step(step) * across, v.step(step) * up
+    a = u.step(step) * across
+    b = v.step(step) * up
     return np.stack([a, b, np.zeros_like(a)], axis=-1)
 
 
@@ -211,7 +219,10 @@ def _axes(array: xr.DataArray, chosen: set[str]) -> tuple[str, str]:
     ]
     # Without a choice a northward component is shown along a meridian.
     northward = re.search(r"north|merid|y_|^v", str(array.attrs.get("standard_name", array.name)))
-    preferred = LATITUDE if northward else LONGITUDE
+    if northward:
+        preferred = LATITUDE
+    else:
+        preferred = LONGITUDE
     others.sort(key=lambda dim: bool(preferred.match(dim)))
     if not levels or not others:
         text = f"{array.name} has the axes {', '.join(kinds)}; expected levels and one more"
@@ -228,12 +239,16 @@ def _coordinate(array: xr.DataArray, dim: str) -> xr.DataArray:
 
 def _horizontal(across: xr.DataArray, array: xr.DataArray) -> tuple[Floats, float, str]:
     """Return places along a section, m/s in their unit per second, and the text of the axis."""
-    values, unit = numbers_in(across), str(across.attrs.get("units", ""))
+    values = numbers_in(across)
+    unit = str(across.attrs.get("units", ""))
     name = str(across.attrs.get("standard_name", across.name))
     if LATITUDE.match(name):
         return values, 1 / DEGREE, "latitude (°)"
     if LONGITUDE.match(name):
-        latitudes = [c for c in array.coords.values() if not c.dims and LATITUDE.match(str(c.name))]
+        latitudes = []
+        for c in array.coords.values():
+            if not c.dims and LATITUDE.match(str(c.name)):
+                latitudes.append(c)
         if not latitudes:
             text = f"the latitude of a section along {across.name} is not known; add it"
             raise FieldError(f"{text}, as in ds.assign_coords(lat=45.0)")
@@ -247,7 +262,8 @@ def _horizontal(across: xr.DataArray, array: xr.DataArray) -> tuple[Floats, floa
 
 def _vertical(up: xr.DataArray, w: xr.DataArray) -> tuple[Floats, float, str]:
     """Return levels, the factor of the velocity to their unit per second, and the axis's text."""
-    unit, moves = str(up.attrs.get("units", "")), str(w.attrs.get("units", ""))
+    unit = str(up.attrs.get("units", ""))
+    moves = str(w.attrs.get("units", ""))
     text = f"{up.attrs.get('long_name', up.name)} ({unit})"
     factor = units.factor(moves, f"({unit})/s")
     if factor is not None and units.measures(unit, units.LENGTHS):

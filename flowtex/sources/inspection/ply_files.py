@@ -107,7 +107,10 @@ def _check_elements(elements: dict[str, _Element]) -> None:
     faces = elements.get("face")
     if faces is None:
         return
-    lists = [name for name in CORNERS if name in faces.counts]
+    lists = []
+    for name in CORNERS:
+        if name in faces.counts:
+            lists.append(name)
     if len(lists) != 1 or faces.kinds[lists[0]] not in WHOLE:
         _damaged("its faces have no list 'vertex_indices' of whole numbers")
 

@@ -249,7 +249,10 @@ class _Document:
 
     def _tuples(self, section: str, name: str = "") -> int | None:
         """Return the number of tuples of an array; ``None`` where another array has it."""
-        count = {key: _whole(self._piece.get(key, "0")) for key in self._piece if key != "Extent"}
+        count = {}
+        for key in self._piece:
+            if key != "Extent":
+                count[key] = _whole(self._piece.get(key, "0"))
         if "Extent" in self._piece:
             sides = _sides(self._piece["Extent"])
             points = math.prod(sides)

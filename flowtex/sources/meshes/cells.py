@@ -78,7 +78,10 @@ def _check_unstructured(mesh: Any) -> None:
     import pyvista as pv
 
     sizes = _checked_sizes(mesh.GetCells(), mesh.n_points)
-    types = np.asarray(mesh.celltypes) if len(sizes) else np.empty(0, np.uint8)
+    if len(sizes):
+        types = np.asarray(mesh.celltypes)
+    else:
+        types = np.empty(0, np.uint8)
     if len(types) != len(sizes):
         raise FieldError(f"there are {len(sizes):,} cells, but {len(types):,} types{REMEDY}")
     for kind in np.unique(types):
@@ -118,7 +121,8 @@ def _checked_sizes(cells: Any, count: int, what: str = "cells", parts: str = "po
         raise FieldError(f"the offsets of its {what} are not in order{REMEDY}")
     connectivity = pv.convert_array(cells.GetConnectivityArray())
     if len(connectivity):
-        low, high = int(connectivity.min()), int(connectivity.max())
+        low = int(connectivity.min())
+        high = int(connectivity.max())
         if low < 0 or high >= count:
             raise FieldError(
                 f"its {what} refer to {parts} {low} to {high}, but there are {count:,}{REMEDY}"

@@ -105,7 +105,11 @@ def slice_of(raw: Any) -> Slice:
     point: Any = None
     if isinstance(raw, str):
         first, through, second = raw.partition("through")
-        normal, point = first.split(","), second.split(",") if through else None
+        normal = first.split(",")
+        if through:
+            point = second.split(",")
+        else:
+            point = None
         if match := _AXIS.fullmatch(raw):
             normal = [float(axis == match["axis"].lower()) for axis in "xyz"]
             point = match["at"] and [_number(match["at"]) * on for on in normal]
@@ -113,7 +117,11 @@ def slice_of(raw: Any) -> Slice:
         normal, point = raw
         if isinstance(normal, str) and normal in "xyz":
             normal = np.arange(3) == "xyz".index(normal)
-    direction, middle = _vector(normal), None if point is None else _vector(point)
+    direction = _vector(normal)
+    if point is None:
+        middle = None
+    else:
+        middle = _vector(point)
     if direction is None or not any(direction) or (point is not None and middle is None):
         raise FieldError(
             f'slice is {brief(raw)}; expected a text such as "x=0.5", "1,1,0" or "1,1,0 through '
@@ -130,9 +138,12 @@ def contour_of(raw: Any) -> Contour:
     FieldError
         When it is neither, or the value is not finite.
     """
-    pair = raw.rpartition("=")[::2] if isinstance(raw, str) else raw
+    pair = raw
+    if isinstance(raw, str):
+        pair = raw.rpartition("=")[::2]
     if isinstance(pair, (list, tuple)) and len(pair) == 2 and isinstance(pair[0], str):
-        name, value = pair[0].strip(), _number(pair[1])
+        name = pair[0].strip()
+        value = _number(pair[1])
         if name and math.isfinite(value):
             return Contour(name, value, repr(raw))
     expected = 'expected an array and its value, as in contour="pressure=101325"'
@@ -144,7 +155,9 @@ def _vector(raw: Any) -> Vector | None:
         x, y, z = map(_number, raw)
     except (TypeError, ValueError):
         return None
-    return (x, y, z) if math.isfinite(x + y + z) else None
+    if math.isfinite(x + y + z):
+        return (x, y, z)
+    return None
 
 
 def _number(raw: Any) -> float:
@@ -227,14 +240,21 @@ def _surface_of(
         kinds = mesh.distinct_cell_types
         flat = cut is None and any(kind.dimension == 2 for kind in kinds)
         if cut is None and any(kind.dimension == 3 for kind in kinds):
-            text = "cells of two dimensions are" if flat else "outer surface of the volume is"
+            if flat:
+                text = "cells of two dimensions are"
+            else:
+                text = "outer surface of the volume is"
             text = f"the {text} drawn; to cut the volume, use {_examples(mesh)}"
             record("surface", text, notable=True)
         drawn_kinds = [kind for kind in kinds if kind.dimension == (2 if flat else 3)]
         drawn: Any = np.isin(mesh.celltypes, drawn_kinds)
-        mesh = mesh if drawn.all() else mesh.extract_cells(drawn, pass_cell_ids=False)
+        if not (drawn.all()):
+            mesh = mesh.extract_cells(drawn, pass_cell_ids=False)
     if cut is not None:
-        name = "isosurface" if isinstance(cut, Contour) else "slice"
+        if isinstance(cut, Contour):
+            name = "isosurface"
+        else:
+            name = "slice"
         record("surface", f"{name} {cut.text.strip(chr(39))}")
         mesh = cut.of(_exact(_on_points(mesh, velocity, cut)))
     elif not isinstance(mesh, pv.PolyData):
@@ -250,7 +270,8 @@ def _surface_of(
         # show which points nearly coincide; others are left out.
         points = np.asarray(mesh.points, dtype=np.float64)
         kept = solid_triangles(points, triangles) | needle_edges(points, triangles).any(axis=1)
-        triangles, cells = triangles[kept], cells[kept]
+        triangles = triangles[kept]
+        cells = cells[kept]
     return mesh, triangles, cells
 
 
@@ -259,8 +280,13 @@ def _examples(mesh: pv.DataSet) -> str:
     axis = int(np.argmin(np.ptp(bounds, axis=1)))
     cut = f'slice="{"xyz"[axis]}={bounds[axis].mean():.4g}"'
     arrays = vectors.catalogue(mesh)
-    names = [a.name for a in arrays if a.real and a.components == 1 and a.name != HIDDEN]
-    return f'{cut} or contour="{names[0]}=VALUE"' if names else cut
+    names = []
+    for a in arrays:
+        if a.real and a.components == 1 and a.name != HIDDEN:
+            names.append(a.name)
+    if names:
+        return f'{cut} or contour="{names[0]}=VALUE"'
+    return cut
 
 
 def _shown_cells(mesh: pv.DataSet) -> pv.DataSet:
@@ -296,7 +322,10 @@ def _on_points(mesh: pv.DataSet, velocity: MeshArray, cut: Cut) -> pv.DataSet:
 
     It keeps its numbers on cells, and may be the changed mesh.
     """
-    moved = set(velocity.parts or (velocity.name,)) if velocity.where == "cells" else set()
+    if velocity.where == "cells":
+        moved = set(velocity.parts or (velocity.name,))
+    else:
+        moved = set()
     if isinstance(cut, Contour) and cut.name not in mesh.point_data:
         moved.add(cut.name)
     cells = mesh.copy(deep=False)

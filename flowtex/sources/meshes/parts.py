@@ -120,8 +120,12 @@ def leaves(mesh: Any, name: str = "") -> Iterator[tuple[str, Any]]:
     keys: list[Any] = mesh.keys()
     for number, (key, block) in enumerate(zip(keys, mesh, strict=True)):
         if block is not None:
-            label = str(number) if key is None else key
-            label = label if keys.count(key) == 1 or key is None else f"{label} {number}"
+            if key is None:
+                label = str(number)
+            else:
+                label = key
+            if not (keys.count(key) == 1 or key is None):
+                label = f"{label} {number}"
             yield from leaves(block, f"{name}/{label}" if name else label)
 
 
@@ -146,7 +150,8 @@ def drawn_parts(
     parts = parts_of(mesh)
     grids = {name: part for name, part in parts.items() if is_structured(part)}
     dimensions = {name: part.max_cell_dimensionality for name, part in parts.items()}
-    flat, solid = ({n: p for n, p in parts.items() if dimensions[n] == rank} for rank in (2, 3))
+    flat = {n: p for n, p in parts.items() if dimensions[n] == 2}
+    solid = {n: p for n, p in parts.items() if dimensions[n] == 3}
     usable = {name: grid for name, grid in grids.items() if dimensions[name] > 1}
     drawn = (solid if cut else {}) or usable or grids or solid or flat or parts
     if len(drawn) < 2:
@@ -177,7 +182,10 @@ def several_fault(mesh: Any, label: str) -> str:
     """Return the message for a choice of several blocks."""
     parts = parts_of(mesh)
     listed = [f"{n} ({name}, {part_size(parts[name])})" for n, name in enumerate(parts)]
-    more = ", ..." if len(listed) > MOST_LISTED else ""
+    if len(listed) > MOST_LISTED:
+        more = ", ..."
+    else:
+        more = ""
     solid = any(part.max_cell_dimensionality == 3 for part in parts.values())
     return (
         f"{label} has {len(parts)} blocks that are not time steps of one mesh: "
@@ -246,8 +254,10 @@ def _steps(
         for name, part in drawn.items():
             yield TimeStep(part, _time(part), f"block {name!r}")
         return
-    part, time = next(iter(drawn.values())), _time(whole)
-    time = _time(part) if time is None else time
+    part = next(iter(drawn.values()))
+    time = _time(whole)
+    if time is None:
+        time = _time(part)
     yield TimeStep(part if combination == "one" else _together(drawn, record), time, label)
 
 
@@ -267,9 +277,15 @@ def _together(parts: Parts, record: Record) -> pv.UnstructuredGrid:
     for array, where in sorted({(a.name, a.where) for a in scalars}):
         lacking = [name for name, block in blocks.items() if array not in data_of(block, where)]
         for block in blocks.values() if lacking else ():
-            count = block.n_points if where == "points" else block.n_cells
+            if where == "points":
+                count = block.n_points
+            else:
+                count = block.n_cells
             data = data_of(block, where)
-            values = np.asarray(data[array]) if array in data else np.full(count, np.nan)
+            if array in data:
+                values = np.asarray(data[array])
+            else:
+                values = np.full(count, np.nan)
             data[array] = values.astype(np.float64)  # of one type, as others are dropped
         if lacking:
             record("align", f"{array!r} has no values in {', '.join(lacking)}", notable=True)
@@ -288,7 +304,10 @@ def _complete_masks(blocks: Parts) -> None:
             present = [np.asarray(each[name]) for each in data if name in each]
             for each, block in zip(data, blocks.values(), strict=True):
                 if present and name not in each:
-                    count = block.n_points if where == "points" else block.n_cells
+                    if where == "points":
+                        count = block.n_points
+                    else:
+                        count = block.n_cells
                     each[name] = np.full(count, SHOWN[name], present[0].dtype)
 
 
@@ -299,7 +318,10 @@ def _wrapped(source: Any, label: str) -> pv.DataObject:
     if type(source).__module__.startswith("meshio"):
         source = of_meshio(source)
     if hasattr(source, "IsA") and source.IsA("vtkDataObject"):
-        mesh = source if isinstance(source, pv.DataObject) else pv.wrap(source)
+        if isinstance(source, pv.DataObject):
+            mesh = source
+        else:
+            mesh = pv.wrap(source)
         check_mesh(mesh)
         return mesh
     raise FieldError(
@@ -310,7 +332,9 @@ def _wrapped(source: Any, label: str) -> pv.DataObject:
 
 def _time(mesh: pv.DataObject) -> float | None:
     values = np.asarray(mesh.field_data.get("TimeValue", []), dtype=float).ravel()
-    return float(values[0]) if len(values) else None
+    if len(values):
+        return float(values[0])
+    return None
 
 
 def _no_mesh(mesh: pv.DataObject, label: str) -> str:
@@ -346,7 +370,8 @@ def aligned(step: TimeStep, first: TimeStep) -> TimeStep:
     Nodes are the same by their places. A step with others remains as it is, and
     :func:`check_nodes` raises an error if they are drawn.
     """
-    grid, before = step.grid, first.grid
+    grid = step.grid
+    before = first.grid
     if (grid.n_points, grid.n_cells) != (before.n_points, before.n_cells) or _equal(grid, before):
         return step
     near = SAME_NODE_SHARE * before.length
@@ -381,14 +406,17 @@ def _equal(grid: Any, before: Any) -> bool:
 
 def _order(before: AnyArray, after: AnyArray, near: float) -> Indices | None:
     """Return the number of each place of a step in the order of the first; ``None`` if unknown."""
-    before, after = (np.asarray(places, dtype=np.float64) for places in (before, after))
+    before = np.asarray(before, dtype=np.float64)
+    after = np.asarray(after, dtype=np.float64)
     if not (np.isfinite(before).all() and np.isfinite(after).all()):
         return None
     if np.abs(after - before).max(initial=0.0) <= near:
         return np.arange(len(before))
     distances, order = (np.asarray(found) for found in scipy.spatial.cKDTree(after).query(before))
     is_whole = distances.max(initial=0.0) <= near and len(np.unique(order)) == len(after)
-    return order if is_whole else None
+    if is_whole:
+        return order
+    return None
 
 
 def check_nodes(first: Sheet, sheet: Sheet, label: str) -> None:
@@ -408,7 +436,8 @@ def check_nodes(first: Sheet, sheet: Sheet, label: str) -> None:
     FieldError
         When the surface has other nodes or triangles, or drawn nodes have moved.
     """
-    before, after = first.points, sheet.points
+    before = first.points
+    after = sheet.points
     if before.shape != after.shape or not np.array_equal(first.triangles, sheet.triangles):  # type: ignore[arg-type]
         raise FieldError(
             f"{label} has a surface of {len(after):,} nodes and the first step has one of "
@@ -470,7 +499,10 @@ def common_scalars(
     common = dict(scalars[0])
     for n, arrays in enumerate(scalars):
         for name in [name for name in common if name not in arrays]:
-            when = f"step {n}" if times is None else f"time {times[n]:g}"
+            if times is None:
+                when = f"step {n}"
+            else:
+                when = f"time {times[n]:g}"
             record("align", f"{name!r} is missing at {when}, so it is not read", notable=True)
             del common[name]
     return {name: np.stack([arrays[name] for arrays in scalars]) for name in common}

@@ -58,18 +58,28 @@ class Layout:
 
     def length(self, *, solution: bool = False) -> int:
         """Return the length of such a file, or of its solution: bytes if binary, else numbers."""
-        axes, word = len(self.dimensions[0]), 4 if self.binary else 1
-        real, marks = word * (1 + (self.double and self.binary)), 8 * self.record_marks
+        axes = len(self.dimensions[0])
+        if self.binary:
+            word = 4
+        else:
+            word = 1
+        real = word * (1 + (self.double and self.binary))
+        marks = 8 * self.record_marks
         header = word * axes * len(self.dimensions) + marks + (word + marks) * self.multiple
         # A solution has four numbers of the flow, then density, momentum and energy at each node.
-        each = (axes + 2) * real if solution else axes * real + word * self.blanked
-        rest = 4 * real + 2 * marks if solution else marks
+        if solution:
+            each = (axes + 2) * real
+            rest = 4 * real + 2 * marks
+        else:
+            each = axes * real + word * self.blanked
+            rest = marks
         return header + sum(math.prod(grid) * each + rest for grid in self.dimensions)
 
 
 def find_layout(path: Path) -> Layout | None:
     """Return the layout of a grid file, or ``None`` if it is no PLOT3D grid."""
-    head, size = _head(path), path.stat().st_size
+    head = _head(path)
+    size = path.stat().st_size
     is_text = set(head[:256]) <= _TEXT
     if is_text:
         check_memory(TEXT_GROWTH * size, "the file")
@@ -79,7 +89,10 @@ def find_layout(path: Path) -> Layout | None:
     for is_big, marks, multiple, axes, double, blanked in choices:
         if is_text and (is_big or marks or double):
             continue
-        numbers = words if is_text else _integers(head, big_endian=is_big)
+        if is_text:
+            numbers = words
+        else:
+            numbers = _integers(head, big_endian=is_big)
         if dimensions := _dimensions(numbers, axes, marks=marks, multiple=multiple):
             layout = Layout(dimensions, multiple, blanked, not is_text, is_big, marks, double)
             if layout.length() == size:
@@ -99,10 +112,12 @@ def _integers(head: bytes, *, big_endian: bool) -> Any:
 def _dimensions(words: Sequence[Any], axes: int, *, marks: bool, multiple: bool) -> Dimensions:
     """Return the dimensions in a header of this form; empty if they are not plausible."""
     # A record mark stands before and after each record.
-    count, first = 1, int(marks)
+    count = 1
+    first = int(marks)
     try:
         if multiple:
-            count, first = int(words[first]), 3 * first + 1
+            count = int(words[first])
+            first = 3 * first + 1
         numbers = [int(word) for word in words[first : first + axes * max(count, 0)]]
     except (IndexError, ValueError):
         return ()
@@ -198,8 +213,10 @@ def read_with_vectors(file: Path) -> tuple[Any, str | None, str]:
     mesh = read_checked(reader)
     if candidates(mesh):
         return mesh, None, ""
-    path, is_stl = file.with_suffix(".npy"), file.suffix.lower() == ".stl"
-    points, cells = mesh.n_points, mesh.n_cells
+    path = file.with_suffix(".npy")
+    is_stl = file.suffix.lower() == ".stl"
+    points = mesh.n_points
+    cells = mesh.n_cells
     vectors, problem = _vectors(path)
     if vectors.shape[-2] == 3 * cells != points and is_stl:
         reader.reader.SetMerging(0)
@@ -215,7 +232,10 @@ def read_with_vectors(file: Path) -> tuple[Any, str | None, str]:
 
     def with_vectors(step: AnyArray) -> Any:
         copy = mesh.copy(deep=False)
-        data = copy.point_data if len(step) == mesh.n_points else copy.cell_data
+        if len(step) == mesh.n_points:
+            data = copy.point_data
+        else:
+            data = copy.cell_data
         data[NAME] = step
         return copy
 

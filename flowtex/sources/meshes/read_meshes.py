@@ -105,7 +105,10 @@ def read_meshes(mesh: Any, options: FieldOptions, *, name: str = "") -> GridArra
 def _cut_of(options: FieldOptions) -> Cut | None:
     """Return the cut of a volume, if there is one."""
     cuts = {"plane": options.plane, "slice": options.slice, "contour": options.contour}
-    given = [f"{name} is {value!r}" for name, value in cuts.items() if value is not None]
+    given = []
+    for name, value in cuts.items():
+        if value is not None:
+            given.append(f"{name} is {value!r}")
     if len(given) > 1:
         raise FieldError(f"{' and '.join(given)}; choose one of them")
     if options.contour is not None:
@@ -211,13 +214,22 @@ def _scalars(
         if array.name.startswith(NUMBERS):
             continue
         is_other = array.name != velocity.name and not NO_VELOCITY.fullmatch(array.name)
-        names = [array.name] if array.components == 1 else []
+        if array.components == 1:
+            names = [array.name]
+        else:
+            names = []
         if array.components in (2, 3) and array.real and is_other:
             names = [component_name(array.name, str(axis)) for axis in range(array.components)]
         if array.numeric and names and not {*nodal, *flat} & set(names):
             on_points = array.where == "points"
-            values = sheet.nodes(array) if on_points else sheet.flat(array)
-            columns = [values] if len(names) == 1 else np.moveaxis(values, -1, 0)
+            if on_points:
+                values = sheet.nodes(array)
+            else:
+                values = sheet.flat(array)
+            if len(names) == 1:
+                columns = [values]
+            else:
+                columns = list(np.moveaxis(values, -1, 0))
             (nodal if on_points else flat).update(zip(names, columns, strict=True))
     return nodal, flat
 
@@ -235,7 +247,10 @@ def _axes(velocity: MeshArray, sheet: Sheet, record: Record, *, solid: bool) -> 
         return [0, 1, 2]
     points = sheet.points[sheet.shown & np.isfinite(sheet.points).all(axis=-1)]
     in_plane = thick_axes(points)
-    variances = np.linalg.eigvalsh(np.cov(points.T)) if len(points) > 2 else np.ones(3)
+    if len(points) > 2:
+        variances = np.linalg.eigvalsh(np.cov(points.T))
+    else:
+        variances = np.ones(3)
     named, is_sure = named_axes(velocity.parts)
     if named and (is_sure or solid or len(in_plane) != 2 or sorted(named) == in_plane):
         axes = list(named)

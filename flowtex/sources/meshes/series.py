@@ -73,7 +73,11 @@ def limited(source: Any, times: Sequence[float]) -> Any:
     """Return a reader or a list of steps with some of its times."""
     if not isinstance(source, list):
         return SomeTimes(source, times)
-    return [step for time, step in zip(times_of(source), source, strict=True) if time in times]
+    found = []
+    for time, step in zip(times_of(source), source, strict=True):
+        if time in times:
+            found.append(step)
+    return found
 
 
 def examined(reader: Any) -> Any:
@@ -174,7 +178,10 @@ def _refuse(first: TimeStep, vectors: str | None, count: int, times: dict[str, l
     try:
         select_velocity(first.grid, vectors, Record())
     except FieldError as error:
-        partial = [f"{name} at {listed(at)}" for name, at in times.items() if len(at) < count]
+        partial = []
+        for name, at in times.items():
+            if len(at) < count:
+                partial.append(f"{name} at {listed(at)}")
         if not partial:
             raise
         text = f"{error}; other times have {', '.join(partial)}"
@@ -214,7 +221,10 @@ def around(source: Any, time: float | str, options: FieldOptions) -> tuple[Any, 
     if vectors is None or all(_has(step.grid, vectors) for step in steps_of(part)):
         return part, moment
     having_it = [step.time for step in steps_of(source) if _has(step.grid, vectors)]
-    known = [each for each in having_it if each is not None]
+    known = []
+    for each in having_it:
+        if each is not None:
+            known.append(each)
     if known:
         moment, chosen = _bracket(time, known, f"{vectors!r} has")
     return limited(source, chosen), moment

@@ -82,25 +82,38 @@ class MeshArray:
     parts: tuple[str, ...] = ()  #: Names of its arrays of one component, if any.
 
     def __str__(self) -> str:
-        made = f" from {', '.join(self.parts)}" if self.parts else ""
+        if self.parts:
+            made = f" from {', '.join(self.parts)}"
+        else:
+            made = ""
         return f"{self.name} ({self.where}, {self.components}{made})"
 
 
 def catalogue(mesh: pv.DataSet) -> list[MeshArray]:
     """Return the arrays on the points and cells of a mesh, without those of :data:`BLANKING`."""
-    return [
-        MeshArray(name, where, math.prod(shape), numeric=kind in "fiub", real=kind == "f")
-        for where in _PLACES
-        for data in [data_of(mesh, where)]
-        for name in data
-        for shape, kind in [(np.shape(data[name])[1:], np.asarray(data[name]).dtype.kind)]
-        if name not in BLANKING
-    ]
+    found = []
+    for where in _PLACES:
+        for data in [data_of(mesh, where)]:
+            for name in data:
+                for shape, kind in [(np.shape(data[name])[1:], np.asarray(data[name]).dtype.kind)]:
+                    if name not in BLANKING:
+                        found.append(
+                            MeshArray(
+                                name,
+                                where,
+                                math.prod(shape),
+                                numeric=kind in "fiub",
+                                real=kind == "f",
+                            )
+                        )
+    return found
 
 
 def data_of(mesh: pv.DataSet, where: str) -> pv.DataSetAttributes:
     """Return the arrays on points or cells."""
-    return mesh.point_data if where == "points" else mesh.cell_data
+    if where == "points":
+        return mesh.point_data
+    return mesh.cell_data
 
 
 def with_array(mesh: pv.DataSet, name: str, values: AnyArray) -> pv.DataSet:
@@ -137,7 +150,9 @@ def values_of(mesh: pv.DataSet, array: MeshArray) -> AnyArray:
     if array.parts:
         return np.column_stack([np.asarray(data[name]) for name in array.parts])
     values = np.asarray(data[array.name])
-    return values.reshape(-1) if array.components == 1 else values
+    if array.components == 1:
+        return values.reshape(-1)
+    return values
 
 
 def candidates(mesh: pv.DataSet) -> list[MeshArray]:
@@ -159,19 +174,31 @@ def _component_vectors(mesh: pv.DataSet) -> list[MeshArray]:
     """Return vectors of single components by their names; pairs on flat meshes."""
     arrays = catalogue(mesh)
     thick = thick_axes(np.reshape(mesh.bounds, (3, 2)).T)
-    pair = (thick[0], thick[1]) if len(thick) == 2 else None
-    return [
-        MeshArray(name, where, len(parts), parts=parts)
-        for where in _PLACES
-        for names in [[a.name for a in arrays if a.where == where and a.real and a.components == 1]]
-        for name, parts in find_vectors(names, pair).items()
-    ]
+    if len(thick) == 2:
+        pair = (thick[0], thick[1])
+    else:
+        pair = None
+    found = []
+    for where in _PLACES:
+        for names in [
+            [a.name for a in arrays if a.where == where and a.real and a.components == 1]
+        ]:
+            for name, parts in find_vectors(names, pair).items():
+                found.append(MeshArray(name, where, len(parts), parts=parts))
+    return found
 
 
 def thick_axes(points: AnyArray) -> list[int]:
     """Return the axes, 0 to 2, along which points (N, 3) extend."""
-    spans = np.ptp(points, axis=0) if len(points) else np.zeros(3)
-    return [axis for axis, span in enumerate(spans) if span > FLAT_SHARE * spans.max()]
+    if len(points):
+        spans = np.ptp(points, axis=0)
+    else:
+        spans = np.zeros(3)
+    found = []
+    for axis, span in enumerate(spans):
+        if span > FLAT_SHARE * spans.max():
+            found.append(axis)
+    return found
 
 
 def select_velocity(mesh: pv.DataSet, vectors: Any, record: Record) -> MeshArray:
@@ -199,11 +226,10 @@ def select_velocity(mesh: pv.DataSet, vectors: Any, record: Record) -> MeshArray
     named = [a for a in (*arrays, *_component_vectors(mesh)) if a.name == vectors]
     if not named and len(words) in (2, 3):
         scalars = {(a.where, a.name) for a in arrays if a.numeric and a.components == 1}
-        named = [
-            MeshArray(",".join(words), where, len(words), parts=words)
-            for where in _PLACES
-            if scalars.issuperset((where, word) for word in words)
-        ]
+        named = []
+        for where in _PLACES:
+            if scalars.issuperset((where, word) for word in words):
+                named.append(MeshArray(",".join(words), where, len(words), parts=words))
     for array in named:
         if array.numeric and array.components in (2, 3):
             record("select", f'the velocity is "{array.name}", as selected')
@@ -275,7 +301,10 @@ def find_vectors(
         for before, alphabet, after in _parses(name):
             whole = tuple(before + token + after for token in alphabet)
             # Four numbered arrays are not a vector.
-            numbered = [before + n + after for n in "0123"] if alphabet[0].isdecimal() else []
+            if alphabet[0].isdecimal():
+                numbered = [before + n + after for n in "0123"]
+            else:
+                numbered = []
             if numbered and all_names.issuperset(numbered):
                 continue
             choices = [whole]
@@ -292,12 +321,17 @@ def find_vectors(
 
 def named_axes(parts: Sequence[str]) -> tuple[tuple[int, ...], bool]:
     """Return the axes, 0 to 2, of named components, empty if unknown, and if these say x, y, z."""
-    parses = (*_parses(parts[0]), *(("", axes, "") for axes in _AXES)) if parts else ()
+    if parts:
+        parses = (*_parses(parts[0]), *(("", axes, "") for axes in _AXES))
+    else:
+        parses = ()
     for before, alphabet, after in parses:
         whole = [before + token + after for token in alphabet]
         if set(parts) <= set(whole) and len(set(parts)) == len(parts):
             axes = tuple(whole.index(part) for part in parts)
-            return (axes, True) if alphabet in _AXES else (() if axes == (0, 1) else axes, False)
+            if alphabet in _AXES:
+                return (axes, True)
+            return (() if axes == (0, 1) else axes, False)
     return (), False
 
 
@@ -309,8 +343,10 @@ def _parses(name: str) -> Iterator[tuple[str, str, str]]:
         if match is None or "," in name:
             continue
         start, end = match.span("token")
-        before, after = name[:start], name[end:]
-        stem, token = _stem(before, after), match["token"]
+        before = name[:start]
+        after = name[end:]
+        stem = _stem(before, after)
+        token = match["token"]
         if NO_VELOCITY.fullmatch(stem) or _MOMENTUM.fullmatch(stem):
             continue
         velocity = _VELOCITY.fullmatch(stem) is not None
@@ -367,7 +403,11 @@ def _hidden(mesh: Any) -> dict[str, Bools]:
         "vtkValidPointMask": lambda flags: flags == 0,
     }
     data = mesh.point_data
-    return {name: test(np.asarray(data[name])) for name, test in tests.items() if name in data}
+    found = {}
+    for name, test in tests.items():
+        if name in data:
+            found[name] = test(np.asarray(data[name]))
+    return found
 
 
 class Masks:
@@ -380,15 +420,23 @@ class Masks:
 
     def masked(self, mesh: Any) -> Any:
         """Return a mesh whose vectors are NaN where they have a fill value."""
-        name, where, parts = self._velocity.name, self._velocity.where, self._velocity.parts
+        name = self._velocity.name
+        where = self._velocity.where
+        parts = self._velocity.parts
         values = values_of(mesh, self._velocity)
         hidden = {f"of the nodes are hidden by {array}": at for array, at in _hidden(mesh).items()}
         hidden["of the cells are hidden by vtkGhostType"] = ~visible_cells(mesh)
         if values.size and np.isnan(values.min()):
             missing = f"of the {where} have no velocity: {name} is NaN"
             hidden[missing] = np.asarray(np.isnan(values).any(-1))
-        visible = visible_cells(mesh) if where == "cells" else ~hidden_nodes(mesh)
-        known = values if visible.all() else values[visible]
+        if where == "cells":
+            visible = visible_cells(mesh)
+        else:
+            visible = ~hidden_nodes(mesh)
+        if visible.all():
+            known = values
+        else:
+            known = values[visible]
         for fill in self._fills:
             known = np.where(known == fill, np.nan, known)
         while (found := undeclared_fill(known)) is not None:
@@ -398,7 +446,10 @@ class Masks:
         for fill, text in self._fills.items():
             hidden[text] = (values == fill).any(axis=-1) & visible
         for text, at in hidden.items():
-            share = float(at.mean()) if at.size else 0.0
+            if at.size:
+                share = float(at.mean())
+            else:
+                share = 0.0
             self._shares[text] = max(share, self._shares.get(text, 0.0))
         if not self._fills:
             return mesh
@@ -411,6 +462,9 @@ class Masks:
     def tell(self, record: Record) -> None:
         """Record what was hidden."""
         for text, share in self._shares.items():
-            percent = f"{share:.0%}" if share >= 0.01 else "less than 1%"
+            if share >= 0.01:
+                percent = f"{share:.0%}"
+            else:
+                percent = "less than 1%"
             if share:
                 record("mask", f"{percent} {text}", notable=text in self._fills.values())

@@ -47,7 +47,9 @@ class VolumeValues:
     def __init__(
         self, velocity: MeshArray, drawn: Cut | Plane | None, steps: int, preference: str
     ) -> None:
-        self._velocity, self._plane, self._preference = velocity, drawn, preference
+        self._velocity = velocity
+        self._plane = drawn
+        self._preference = preference
         # All planes in a direction have the same values.
         if isinstance(drawn, Slice):
             self._plane = replace(drawn, point=None, text="")
@@ -88,8 +90,15 @@ class VolumeValues:
             *self._velocity.parts,
             self._velocity.name,
         }
-        held = [d.GetAbstractArray(n) for d in data for n in sorted(names) if d.HasArray(n)]
-        place = grid.GetMTime() if isinstance(part, Plane) else None
+        held = []
+        for d in data:
+            for n in sorted(names):
+                if d.HasArray(n):
+                    held.append(d.GetAbstractArray(n))
+        if isinstance(part, Plane):
+            place = grid.GetMTime()
+        else:
+            place = None
         key = (*(a.GetMTime() for a in held), place, part, array, self._velocity, self._count)
         sample = _samples.get(key, lambda: self._sample(grid, array, part))
         self._steps.setdefault(name, []).append(sample)
@@ -101,18 +110,23 @@ class VolumeValues:
         otherwise: of the part in a plane if ``part`` is a cut, else of the whole. The result has at
         most as many values as this object keeps, and the two ends, (S,).
         """
-        values, most = vectors.values_of(grid, array), np.float64(MAGNITUDES[1])
+        values = vectors.values_of(grid, array)
+        most = np.float64(MAGNITUDES[1])
         if isinstance(part, int):
             values = values[:, part]
         elif values.ndim > 1:
             values = _lengths(values, None if part is None else _normals(grid, array, part))
-        shown = (
-            vectors.visible_cells(grid) if array.where == "cells" else ~vectors.hidden_nodes(grid)
-        )
+        if array.where == "cells":
+            shown = vectors.visible_cells(grid)
+        else:
+            shown = ~vectors.hidden_nodes(grid)
         velocity = vectors.values_of(grid, self._velocity)
         if array.where == self._velocity.where and np.isnan(velocity.min(initial=0)):
             shown &= ~np.isnan(velocity).any(axis=-1)
-        known = values if shown.all() else values[shown]
+        if shown.all():
+            known = values
+        else:
+            known = values[shown]
         if not (known.min(initial=0) >= -most and known.max(initial=0) <= most):  # or NaN
             known = known[np.abs(known) <= most]
         if len(known) <= self._count:
@@ -142,7 +156,10 @@ def _lengths(values: Floats, normals: Floats | None) -> Floats:
     for rows in row_blocks(len(values), 1):
         part = values[rows].astype(float)
         if normals is not None:
-            normal = normals if normals.ndim == 1 else normals[rows].astype(float)
+            if normals.ndim == 1:
+                normal = normals
+            else:
+                normal = normals[rows].astype(float)
             with np.errstate(all="ignore"):  # where sides of a cell have no length
                 part -= (dot(part, normal) / dot(normal, normal))[..., None] * normal
         lengths[rows] = norm(part)
@@ -200,9 +217,19 @@ def find_plane(mesh: Any, plane: Any, record: Record) -> Plane:
         text += f'plane="j={dimensions[1] // 2}" ({ranges}), or cut anywhere as in slice="z"'
         record("select", text, notable=True)
         return Plane(dimensions, 2, dimensions[2] // 2)
-    match = _PLANE.fullmatch(plane) if isinstance(plane, str) else None
-    axis = "ijk".index(match[1].lower()) if match else 0
-    count, index = dimensions[axis], int(match[2]) if match else 0
+    if isinstance(plane, str):
+        match = _PLANE.fullmatch(plane)
+    else:
+        match = None
+    if match:
+        axis = "ijk".index(match[1].lower())
+    else:
+        axis = 0
+    count = dimensions[axis]
+    if match:
+        index = int(match[2])
+    else:
+        index = 0
     if match is None or not -count <= index < count or (min(dimensions) == 1 and count > 1):
         text = 'expected "i=N", "j=N" or "k=N" with a whole number N'
         raise FieldError(f"plane is {plane!r}; {text} within {size}, and no plane for a surface")
@@ -218,7 +245,10 @@ def plane_sheet(
     shown = ~plane.nodes(vectors.hidden_nodes(grid))
     # Only values of cells are spread beyond the last line.
     known = np.where(shown[..., None], points, np.nan)
-    wrap = _wrap(known, periodic) if len(grid.cell_data) else (False, False)
+    if len(grid.cell_data):
+        wrap = _wrap(known, periodic)
+    else:
+        wrap = (False, False)
     visible = plane.cells(vectors.visible_cells(grid))
 
     def nodes(array: MeshArray) -> Floats:
@@ -261,7 +291,8 @@ def plane_positions(grid: Any, plane: Plane) -> Floats:
         lines[plane.axis] = lines[plane.axis][plane.index : plane.index + 1]
         part: Any = pv.RectilinearGrid(*lines)
     else:
-        bare, ends = grid.copy(deep=False), np.reshape(grid.GetExtent(), (3, 2))
+        bare = grid.copy(deep=False)
+        ends = np.reshape(grid.GetExtent(), (3, 2))
         bare.clear_data()
         ends[plane.axis] = ends[plane.axis, 0] + plane.index
         part = bare.extract_subset(ends.ravel().tolist())

@@ -75,7 +75,10 @@ def _ugrid(variables: Mapping[str, xr.DataArray]) -> Iterator[Mesh]:
         if attrs.get("cf_role") != "mesh_topology" or "face_node_connectivity" not in attrs:
             continue
         names = str(attrs.get("node_coordinates", "")).split()
-        missing = [n for n in (attrs["face_node_connectivity"], *names) if n not in variables]
+        missing = []
+        for n in (attrs["face_node_connectivity"], *names):
+            if n not in variables:
+                missing.append(n)
         if missing or len(names) != 2:
             raise FieldError(
                 f"the topology {topology.name!r} names {', '.join(missing) or names}, which the "
@@ -131,7 +134,8 @@ def _bounded(variables: Mapping[str, xr.DataArray]) -> Iterator[Mesh]:
             bounds_y = variables[name_y]
             if bounds_x.ndim == 2 and bounds_x.dims == bounds_y.dims and bounds_x.shape[1] >= 3:
                 units = {"units": x.attrs.get("units", "")}
-                a, b = (c.assign_attrs(units | c.attrs) for c in (bounds_x, bounds_y))
+                a = bounds_x.assign_attrs(units | bounds_x.attrs)
+                b = bounds_y.assign_attrs(units | bounds_y.attrs)
                 yield Mesh("cells with bounds", a, b)
 
 
@@ -159,7 +163,10 @@ def _renamed(ds: xr.Dataset, mesh: Mesh) -> xr.Dataset:
     for ours, theirs in zip((NODES, FACES), mesh.dims, strict=True):
         if ours in ds.dims or not theirs:
             continue
-        alike = [d for d in ds.dims if ds.sizes[d] == sizes[theirs] and d not in (NODES, FACES)]
+        alike = []
+        for d in ds.dims:
+            if ds.sizes[d] == sizes[theirs] and d not in (NODES, FACES):
+                alike.append(d)
         dim: Any
         if theirs in ds.dims:
             dim = theirs
@@ -251,7 +258,10 @@ def points_in(variables: dict[str, xr.DataArray]) -> Iterator[Mesh]:
 
 def position_pairs(arrays: list[xr.DataArray]) -> Iterator[tuple[xr.DataArray, xr.DataArray]]:
     """Yield longitudes and latitudes, then x and y, along the same dimensions."""
-    numbers = [a for a in arrays if a.ndim and a.dtype.kind in "fiu"]
+    numbers = []
+    for a in arrays:
+        if a.ndim and a.dtype.kind in "fiu":
+            numbers.append(a)
     for pattern, word in ((LONGITUDE, "longitude"), (ACROSS, "projection_x_coordinate")):
         for x in numbers:
             name = str(x.name).lower()
@@ -316,7 +326,10 @@ def _along_faces(pair: Pair, face: str, count: int) -> str:
 
 
 def _one_dimension(ds: xr.Dataset, face: set[str]) -> xr.Dataset:
-    parts = [name for name, a in ds.variables.items() if face & {*a.dims} and face - {*a.dims}]
+    parts = []
+    for name, a in ds.variables.items():
+        if face & {*a.dims} and face - {*a.dims}:
+            parts.append(name)
     ds = ds.drop_vars(parts)
     if "source" in ds.encoding and not ds.chunks and find_spec("dask") is not None:
         # Otherwise all of a file is read.

@@ -90,7 +90,8 @@ def _time_by_number(tracks: Tracks, name: str, number: Any) -> float:
 
 def _time_by_value(tracks: Tracks, name: str, value: Any) -> float:
     """Return the time of a date, the first of a day, or of a number."""
-    low, high = float(tracks.times.min()), float(tracks.times.max())
+    low = float(tracks.times.min())
+    high = float(tracks.times.max())
     try:
         begin = end = float("nan")
         if tracks.origin is None:

@@ -36,7 +36,10 @@ def _grid_attributes(datasets: Sequence[xr.Dataset]) -> dict[str, Any] | None:
     """Return the attributes of the grid, without prefixes; ``None`` for other grids."""
     for ds in datasets:
         holders = [dict(a.attrs) for a in ds.variables.values()]
-        grids = [attrs for attrs in holders if "healpix" in map(attrs.get, GRID_NAMES)]
+        grids = []
+        for attrs in holders:
+            if "healpix" in map(attrs.get, GRID_NAMES):
+                grids.append(attrs)
         group = ds.attrs.get("dggs")  # the convention of Zarr groups
         if isinstance(group, Mapping) and group.get("name") == "healpix":
             grids.append(dict(group))

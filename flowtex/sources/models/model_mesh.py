@@ -177,7 +177,10 @@ class Mesh:
             # The shorter diagonal of a quadrilateral makes the better triangles.
             p = self.positions
             four = (faces >= 0).sum(axis=1) == 4
-            a, b, c, d = (p[faces[four, k]] for k in range(4))
+            a = p[faces[four, 0]]
+            b = p[faces[four, 1]]
+            c = p[faces[four, 2]]
+            d = p[faces[four, 3]]
             with np.errstate(invalid="ignore"):
                 turn = np.linalg.norm(d - b, axis=1) < np.linalg.norm(c - a, axis=1)
             turned = np.flatnonzero(four)[turn]

@@ -73,7 +73,10 @@ def _time_of(ds: xr.Dataset, x: xr.DataArray) -> xr.DataArray | None:
 def _are_moving(ds: xr.Dataset, x: xr.DataArray, time: xr.DataArray) -> bool:
     """Return whether positions are those of points that move, by the names of their axes."""
     dims = [str(dim) for dim in x.dims]
-    values = [array for array in ds.data_vars.values() if {*array.dims} == {*dims}]
+    values = []
+    for array in ds.data_vars.values():
+        if {*array.dims} == {*dims}:
+            values.append(array)
     if time.ndim == 2 or any(map(IDENTITIES.match, dims)):
         return any(map(IDENTITIES.match, dims))
     return len(values) > 1 and bool(TIMES.match(str(time.dims[0])))
@@ -159,7 +162,10 @@ def _numbers(time: xr.DataArray) -> tuple[Floats, str, Any]:
         return _of_spans(values), "s", None
     if values.dtype.kind == "M":
         known = values[~np.isnat(values)]
-        origin = known.min() if len(known) else np.datetime64(0, "s")
+        if len(known):
+            origin = known.min()
+        else:
+            origin = np.datetime64(0, "s")
         _, _, start = as_seconds(np.array([origin]), "")
         return _of_spans(values - origin), "s", start
     if values.dtype.kind == "O":

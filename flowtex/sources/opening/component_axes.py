@@ -82,7 +82,10 @@ def split_components(ds: xr.Dataset) -> xr.Dataset:
         if array.dtype.kind == "c":
             ds = _of_complex(ds, str(name), prefix=f"{name}_")
             continue
-        dim = _axis(array) if array.dtype.kind == "f" else None
+        if array.dtype.kind == "f":
+            dim = _axis(array)
+        else:
+            dim = None
         if dim is not None:
             ds = _split(ds, str(name), dim, prefix=f"{name}_")
     return ds
@@ -98,7 +101,11 @@ def _of_complex(ds: xr.Dataset, name: str, prefix: str) -> xr.Dataset:
 
 
 def _kept(array: xr.DataArray) -> dict[str, Any]:
-    return {key: value for key, value in array.attrs.items() if key in KEPT}
+    found = {}
+    for key, value in array.attrs.items():
+        if key in KEPT:
+            found[key] = value
+    return found
 
 
 def _labels(array: xr.DataArray, dim: str) -> list[str]:
@@ -113,7 +120,10 @@ def _numbers(labels: Sequence[str]) -> list[int]:
     """Return the numbers of the components that labels name, from 0; none if they name others."""
     for pattern in LABELS:
         matches = list(map(pattern.match, labels))
-        numbers = [(match.lastindex or 0) - 1 for match in matches if match]
+        numbers = []
+        for match in matches:
+            if match:
+                numbers.append((match.lastindex or 0) - 1)
         if len(set(numbers)) == len(labels):
             return numbers
     return []
@@ -197,7 +207,10 @@ def _split(ds: xr.Dataset, name: str, dim: str, prefix: str) -> xr.Dataset:
     places = numbers or [*range(count)]
     plane = _plane(array, dim)
     are_axes = all(label[-1:].lower() in "xyz" for label in labels)
-    drawn = plane if plane and (count == 3 or are_axes or set(places) != {0, 1}) else [0, 1]
+    if plane and (count == 3 or are_axes or set(places) != {0, 1}):
+        drawn = plane
+    else:
+        drawn = [0, 1]
     if count == 2 and not numbers:
         places = drawn
     if not set(drawn) <= set(places):
@@ -216,21 +229,28 @@ def _split(ds: xr.Dataset, name: str, dim: str, prefix: str) -> xr.Dataset:
         part.attrs = _kept(array)
         parts[f"{prefix}{word}"] = part
     ds = ds.drop_vars([name]).assign(parts)
-    return _upright(ds, array, plane) if plane not in ([], [0, 1]) else ds
+    if plane not in ([], [0, 1]):
+        return _upright(ds, array, plane)
+    return ds
 
 
 def _plane(array: xr.DataArray, dim: str) -> list[int]:
     """Return the numbers of the two axes x, y, z along which an array lies; empty for others."""
     lengths = {str(d).lower(): n for d, n in array.sizes.items() if str(d) != dim}
     axes = [n for n, letter in enumerate("xyz") if lengths.get(letter, 1) > 1]
-    return axes if len(axes) == 2 else []
+    if len(axes) == 2:
+        return axes
+    return []
 
 
 def _upright(ds: xr.Dataset, array: xr.DataArray, plane: list[int]) -> xr.Dataset:
     """Return a dataset in the plane x, y instead of x, z or y, z."""
     names = {str(d).lower(): str(d) for d in array.dims}
     changes = ((names["xyz"[n]], letter) for n, letter in zip(plane, "xy", strict=True))
-    free = {old: new for old, new in changes if old != new}
+    free = {}
+    for old, new in changes:
+        if old != new:
+            free[old] = new
     ds = ds.drop_vars([n for n in free.values() if n in ds.variables and n not in free])
     ds = ds.squeeze([n for n in free.values() if n in ds.dims and n not in free], drop=True)
     return ds.rename(free)

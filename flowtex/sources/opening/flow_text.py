@@ -151,7 +151,10 @@ def _layout(path: Path) -> Layout:
                 return Layout(tuple(above), *found)
             if line.strip():
                 above.append(line.strip())
-    first = above[0][:60] if above else ""
+    if above:
+        first = above[0][:60]
+    else:
+        first = ""
     raise FieldError(
         f"no line has {FEWEST} numbers or more, and the first one is {first!r}; expected columns "
         "of places and components, such as x, y, u and v"

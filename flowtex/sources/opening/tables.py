@@ -151,7 +151,10 @@ def _with_attributes(
 
 def _trajectories(frame: Any, x: str, y: str) -> xr.Dataset | None:
     """Return rows with an identity, a time and a position that moves; ``None`` for others."""
-    columns = [str(name) for name in frame.columns if name not in (x, y)]
+    columns = []
+    for name in frame.columns:
+        if name not in (x, y):
+            columns.append(str(name))
     identity = next(filter(IDENTITIES.match, columns), None)
     time = next(filter(TIMES.match, columns), None)
     if identity is None or time is None or frame[identity].is_unique:
@@ -178,12 +181,16 @@ def _plain(table: Any) -> tuple[Any, dict[str, dict[str, str]]]:
             raise FieldError(f"the geometries are {kinds}; expected points")
         on_earth = table.crs is not None
         at = (table.to_crs(4326) if on_earth else table).geometry
-        names = ("lon", "lat") if on_earth else ("x", "y")
+        if on_earth:
+            names = ("lon", "lat")
+        else:
+            names = ("x", "y")
         frame = pandas.DataFrame(table.drop(columns=table.geometry.name))
         frame = frame.drop(columns=[n for n in names if n in frame])
         frame = frame.assign(**{names[0]: at.x, names[1]: at.y})
     levels = [name for name in frame.index.names if name is not None]
-    frame = frame.reset_index(levels) if levels else frame
+    if levels:
+        frame = frame.reset_index(levels)
     named = {column: split_unit(str(column)) for column in frame.columns}
     changes = component_names(name for name, _ in named.values())
     columns = {}
@@ -203,7 +210,9 @@ def _pair(
 ) -> tuple[str, str] | None:
     """Return the columns with the shortest names that match, as ``lon`` before ``lon_bnds``."""
     found = [sorted(filter(p.match, columns), key=len) for p in (first, second)]
-    return (found[0][0], found[1][0]) if all(found) else None
+    if all(found):
+        return (found[0][0], found[1][0])
+    return None
 
 
 def _axes(frame: Any, x: str, y: str) -> tuple[Any, list[str]]:
@@ -245,7 +254,8 @@ def _times_in(frame: Any, time: str) -> Any:
 
 
 def _is_grid(a: AnyArray, b: AnyArray) -> bool:
-    (columns, i), (rows, j) = (np.unique(c, return_inverse=True) for c in (a, b))
+    (columns, i) = np.unique(a, return_inverse=True)
+    (rows, j) = np.unique(b, return_inverse=True)
     if not 0 < len(columns) * len(rows) <= MOST_PLACES * len(a):
         return False
     present = np.zeros((len(rows), len(columns)), dtype=bool)
@@ -348,7 +358,10 @@ def cut_row(number: int, row: list[str], fault: str) -> FieldError:
 
 def _names(row: list[str]) -> int:
     """Return the number of columns in a header, which may end with a separator."""
-    named = [place for place, name in enumerate(row, start=1) if name.strip()]
+    named = []
+    for place, name in enumerate(row, start=1):
+        if name.strip():
+            named.append(place)
     return named[-1]
 
 
@@ -416,7 +429,10 @@ def read_vec(path: Path) -> xr.Dataset:
     _check_rows(path, ",", header=len(names))
     frame = pandas.read_csv(path, skiprows=1, header=None, names=labels, skipinitialspace=True)
     if VEC_FLAG in frame:
-        flow = [c for c in labels if c.split()[0] in ("U", "V", "W")]
+        flow = []
+        for c in labels:
+            if c.split()[0] in ("U", "V", "W"):
+                flow.append(c)
         frame[flow] = frame[flow].where(frame[VEC_FLAG] > 0)
     return of_table(frame)
 
@@ -460,11 +476,15 @@ def read_winds(path: Path) -> xr.Dataset:
 
 
 def _component(header: dict[str, Any], data: Any, name: str) -> xr.DataArray:
-    columns, rows = int(header["nx"]), int(header["ny"])
+    columns = int(header["nx"])
+    rows = int(header["ny"])
     check_count(min(columns, rows), 1, f"the {name} component", "columns and rows")
     check_count(len(data), columns * rows, f"the {name} component", "numbers")
     lon = float(header["lo1"]) + abs(float(header["dx"])) * np.arange(columns)
-    south = -1.0 if float(header["la1"]) >= float(header.get("la2", -90.0)) else 1.0
+    if float(header["la1"]) >= float(header.get("la2", -90.0)):
+        south = -1.0
+    else:
+        south = 1.0
     lat = float(header["la1"]) + south * abs(float(header["dy"])) * np.arange(rows)
     coordinates: dict[str, Any] = {
         "latitude": ("latitude", lat, {"units": "degrees_north"}),

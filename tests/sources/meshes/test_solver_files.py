@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -192,14 +193,14 @@ def test_wall_stress_that_the_first_time_lacks(tmp_path: Path) -> None:
     walls = "boundary/walls"
     with pytest.warns(Notice) as caught:
         field = FlowField.from_file(path, block=walls)
-    assert [str(notice.message) for notice in caught[:2]] == [
+    assert [str(notice.message) for notice in caught.list[:2]] == [
         '"U" is zero on this wall, so "wallShearStress" is drawn; to draw the other one, '
         'vectors="U"',
         "no array 'wallShearStress' at time 0.5, which is left out",
     ]
     assert field.times.tolist() == [1.0]
     # The mean of the faces around each node, as PyVista computes it.
-    reader = pv.get_reader(str(path))
+    reader: Any = pv.OpenFOAMReader(str(path))
     reader.set_active_time_value(1.0)
     mesh = reader.read()["boundary"]["walls"]
     mesh.clear_point_data()
