@@ -308,13 +308,9 @@ def _offset(at_u: Places, at_v: Places) -> tuple[float, float] | None:
 
 
 def _own_places(array: xr.DataArray, beside: Beside) -> Places | None:
-<<<<<<< HEAD
     """Return the positions of a variable from its own coordinates, ``None`` without them."""
-    dims, source = horizontal_dims(array), _source(array, beside.datasets)
-=======
     dims = horizontal_dims(array)
     source = _source(array, beside.datasets)
->>>>>>> fb49766a (Write one thought per line in the readers)
     if len(dims) < 2:
         return None
     own = {str(name): {*c.dims} for name, c in source.variables.items()}

@@ -86,9 +86,10 @@ def octahedral_file(folder: Path) -> Made:
 def sphere(count: int) -> tuple[Any, Any, Any]:
     """Return even points on the sphere in degrees, (N,) each, and triangles, (M, 3)."""
     sine = 1 - (2 * np.arange(count) + 1) / count
-    lon = np.arange(count) * 180 * (3 - 5**0.5) % 360
+    lon: Floats = np.arange(count) * 180 * (3 - 5**0.5) % 360
     lat: Floats = np.degrees(np.arcsin(sine))
-    return lon, lat, ConvexHull(Projection(GLOBE).positions(lon, lat)).simplices
+    points = Projection(GLOBE).positions(lon, lat)
+    return lon, lat, ConvexHull(points).simplices
 
 
 @supported(
