@@ -11,7 +11,6 @@ from known_flow import EAST, NORTH, Truth, wind
 from scipy.spatial import ConvexHull
 from supported import Made, supported
 
-from flowtex._util.array_types import Floats
 from flowtex.field.earth import GLOBE, Projection
 from flowtex.sources.models.healpix import healpix_centres
 
@@ -86,8 +85,8 @@ def octahedral_file(folder: Path) -> Made:
 def sphere(count: int) -> tuple[Any, Any, Any]:
     """Return even points on the sphere in degrees, (N,) each, and triangles, (M, 3)."""
     sine = 1 - (2 * np.arange(count) + 1) / count
-    lon: Floats = np.arange(count) * 180 * (3 - 5**0.5) % 360
-    lat: Floats = np.degrees(np.arcsin(sine))
+    lon = np.arange(count, dtype=np.float64) * 180 * (3 - 5**0.5) % 360
+    lat = np.degrees(np.arcsin(sine)).astype(np.float64)
     points = Projection(GLOBE).positions(lon, lat)
     return lon, lat, ConvexHull(points).simplices
 
