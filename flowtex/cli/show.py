@@ -169,7 +169,10 @@ def _part_of(library: Library, choice: dict[str, Any]) -> dict[str, Any] | None:
     an oblique plane.
     """
     part = dict(choice)
-    given = [name for name in FIELD_OPTIONS if name in choice]
+    given = []
+    for name in FIELD_OPTIONS:
+        if name in choice:
+            given.append(name)
     if not given:
         return part
     if not {"slice", "projection", "globe"}.issuperset(given):

@@ -127,7 +127,10 @@ class FieldOptions:
         if not names:
             return
         if self.vectors is not None or self.u is None or self.v is None:
-            given = {k: n for k, n in vars(self).items() if k in ("vectors", *"uvw") and n}
+            given = {}
+            for k, n in vars(self).items():
+                if k in ("vectors", *"uvw") and n:
+                    given[k] = n
             words = ", ".join(f"{name}={value!r}" for name, value in given.items())
             raise FieldError(
                 f"{words} is given; expected u and v (and w of a mesh), or vectors alone"

@@ -310,7 +310,7 @@ class MeshSource(FlowSource):
             self.block_vectors = {name: self._names(grid) for name, grid in blocks.items()}
             if series:
                 self._add_last(mesh)
-            if not series:
+            else:
                 self._mesh = first
                 self.nbytes = sum(map(_bytes, blocks.values()))
             return next(iter(blocks.values()))
@@ -345,7 +345,10 @@ def _choices(mesh: Any, *, series: bool) -> parts.Parts:
     drawn, combination = parts.drawn_parts(mesh, series=series)
     if combination in ("together", "steps"):
         return {}
-    others = {name: part for name, part in parts.parts_of(mesh).items() if candidates(part)}
+    others = {}
+    for name, part in parts.parts_of(mesh).items():
+        if candidates(part):
+            others[name] = part
     choices = {**drawn, **others}
     if len(choices) > 1:
         return choices

@@ -77,7 +77,9 @@ def open_reader(file: Path) -> Any:
     if file.suffix.lower() == ".foam" and in_pieces:
         return DecomposedReader(str(file))
     reader: Any = pv.get_reader(str(file))
-    return _CGNSReader(reader) if isinstance(reader, pv.CGNSReader) else reader
+    if isinstance(reader, pv.CGNSReader):
+        return _CGNSReader(reader)
+    return reader
 
 
 def _xdmf_reader(file: Path) -> Any:
@@ -115,8 +117,14 @@ class _CGNSReader:
         information = reader.reader.GetOutputInformation(0)
         times = information.Get(vtkStreamingDemandDrivenPipeline.TIME_STEPS()) or ()
         # VTK reports 0 if the file has no times.
-        self.time_values = [] if times == (0.0,) else sorted(map(float, times))
-        self.active_time_value = self.time_values[0] if self.time_values else 0.0
+        if times == (0.0,):
+            self.time_values = []
+        else:
+            self.time_values = sorted(map(float, times))
+        if self.time_values:
+            self.active_time_value = self.time_values[0]
+        else:
+            self.active_time_value = 0.0
 
     def set_active_time_value(self, time: float) -> None:
         """Set the time to read."""
@@ -179,7 +187,10 @@ def open_file(path: str | Path) -> OpenFile:
     except ValueError as error:
         if "does not support a file" not in str(error):
             raise
-        reason = "not PLOT3D" if grid.suffix.lower() in plot3d.GRID_SUFFIXES else repr(file.suffix)
+        if grid.suffix.lower() in plot3d.GRID_SUFFIXES:
+            reason = "not PLOT3D"
+        else:
+            reason = repr(file.suffix)
         raise FieldError(f"unknown format ({reason}); expected {_KNOWN_FORMATS}") from error
 
 
@@ -194,8 +205,14 @@ def _path_problem(file: Path) -> str:
     if file.suffix.lower() == ".foam" and not case:
         return "its folder has no folder constant; expected the folder of an OpenFOAM case"
     if not file.exists():
-        similar = sorted(p.name for p in file.parent.glob(f"{file.stem}.*")) if file.name else []
-        names = f". Similar names: {', '.join(similar[:5])}" if similar else ""
+        if file.name:
+            similar = sorted(p.name for p in file.parent.glob(f"{file.stem}.*"))
+        else:
+            similar = []
+        if similar:
+            names = f". Similar names: {', '.join(similar[:5])}"
+        else:
+            names = ""
         text = "the file does not exist; check the spelling and the folder (patterns are not"
         return f"{text} expanded){names}"
     if (file / "constant" / "polyMesh").exists():
@@ -216,7 +233,9 @@ def _path_problem(file: Path) -> str:
             is_empty = not stream.read(1) and file.suffix != ".foam"
     except OSError as error:
         return f"cannot be opened ({error.strerror}); check its permissions"
-    return f"the file is empty; expected {_KNOWN_FORMATS}" if is_empty else ""
+    if is_empty:
+        return f"the file is empty; expected {_KNOWN_FORMATS}"
+    return ""
 
 
 def read_files(
@@ -279,7 +298,10 @@ def one_path(path: str | Path | Sequence[str | Path]) -> Path:
     """
     if isinstance(path, (str, Path)):
         return Path(path).expanduser()
-    missing = [str(each) for each in path if not Path(each).expanduser().exists()]
+    missing = []
+    for each in path:
+        if not Path(each).expanduser().exists():
+            missing.append(str(each))
     raise FieldError(
         f"{', '.join(missing)}: no such file; check the path and the working directory"
         if missing
@@ -383,17 +405,23 @@ def describe(path: str | Path, block: int | str | None = None) -> FileSummary:
     """Summarize the first step of a file, whether or not a flow can be drawn from it."""
     with errors_of_file(path):
         file = open_file(path)
-        mesh = parts.read_checked(file.source) if parts.is_reader(file.source) else file.source
-        mesh = mesh[0].grid if isinstance(mesh, list) else mesh
+        if parts.is_reader(file.source):
+            mesh = parts.read_checked(file.source)
+        else:
+            mesh = file.source
+        if isinstance(mesh, list):
+            mesh = mesh[0].grid
         return _summary(file, mesh, block)
 
 
 def _summary(file: OpenFile, mesh: Any, block: int | str | None) -> FileSummary:
-    found, meshes = list(parts.leaves(mesh)), list(parts.parts_of(mesh))
+    found = list(parts.leaves(mesh))
+    meshes = list(parts.parts_of(mesh))
     drawn = list(parts.drawn_parts(mesh)[0].values())
-    part = (
-        (drawn or [p for _, p in found] or [mesh])[0] if block is None else parts.pick(mesh, block)
-    )
+    if block is None:
+        part = (drawn or [p for _, p in found] or [mesh])[0]
+    else:
+        part = parts.pick(mesh, block)
     is_mesh = hasattr(part, "point_data")
     arrays, velocities = (catalogue(part), candidates(part)) if is_mesh else ([], [])
     listed = [_array(part, a) for a in (*arrays, *(a for a in velocities if a.parts))]
@@ -455,9 +483,15 @@ def _problem(mesh: Any, vectors: str | None, *, series: bool) -> str:
 
 
 def _array(mesh: Any, array: MeshArray) -> ArraySummary:
-    values = values_of(mesh, array).astype(np.float64) if array.numeric else np.empty(0)
+    if array.numeric:
+        values = values_of(mesh, array).astype(np.float64)
+    else:
+        values = np.empty(0)
     if array.components > 1:
         values = np.linalg.norm(values.reshape(-1, array.components), axis=1)
     values = values[np.isfinite(values)]
-    ends = (float(values.min()), float(values.max())) if len(values) else (np.nan, np.nan)
+    if len(values):
+        ends = (float(values.min()), float(values.max()))
+    else:
+        ends = (np.nan, np.nan)
     return ArraySummary(array.name, array.where, array.components, *ends, array.parts)

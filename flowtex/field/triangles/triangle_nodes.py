@@ -142,7 +142,9 @@ def once(corners: Indices) -> tuple[Indices, Indices]:
     if not len(begins):
         return corners, solid
     turns = np.add.reduceat(np.where(ahead, 1, -1)[order], begins)
-    low, middle, high = (corner[order[begins]] for corner in (low, middle, high))
+    low = low[order[begins]]
+    middle = middle[order[begins]]
+    high = high[order[begins]]
     up = np.stack([low, middle, high], axis=-1)
     up[turns < 0] = up[turns < 0][:, [0, 2, 1]]
     return up[turns != 0], solid[order[begins]][turns != 0]
@@ -275,7 +277,8 @@ def _straightest(
     for count in np.unique(counts):
         sides = order[starts[counts == count][:, None] + np.arange(count)]
         triangle, corner = np.divmod(sides[:, :1], 3)
-        begin, end = (points[triangles[triangle, (corner + k) % 3]] for k in (1, 2))
+        begin = points[triangles[triangle, (corner + 1) % 3]]
+        end = points[triangles[triangle, (corner + 2) % 3]]
         along = end - begin
         away = points[triangles.reshape(-1)[sides]] - begin
         share = dot(away, along) / np.maximum(dot(along, along), np.finfo(float).tiny)

@@ -160,7 +160,8 @@ class TriangleSurface(NodeSurface):
         length = np.linalg.norm(self.crosses, axis=1, keepdims=True)
         unit = np.divide(self.crosses, length, out=np.zeros_like(self.crosses), where=length > 0)
         corners = self.points[0][self.triangles]
-        first, second = (np.roll(corners, by, axis=1) - corners for by in (-1, 1))
+        first = np.roll(corners, -1, axis=1) - corners
+        second = np.roll(corners, 1, axis=1) - corners
         angle = np.arctan2(length, dot(first, second))
         at = self.triangles.ravel()
         cell = np.repeat(np.arange(len(corners)), 3)

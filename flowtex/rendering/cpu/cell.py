@@ -117,7 +117,8 @@ def _square(slices: Slices, coordinate: Floats, values: Values) -> tuple[Floats,
 
     def node(right: tuple[int, int]) -> _Node:
         position = (np.floor(texel) + right + 0.5) / size
-        tangent, turn = (slices.layer(position, n, finest) for n in (0, values["u_rateLayer"]))
+        tangent = slices.layer(position, 0, finest)
+        turn = slices.layer(position, values["u_rateLayer"], finest)
         by = turn[:, :2] * (turn[:, 3:] / (tangent[:, 3:] * values["u_cell"]))
         moved = tangent[:, :3] * turn[:, 3:]
         return moved, by, (np.linalg.norm(moved, axis=1), np.linalg.norm(by, axis=1)), 0 * one
@@ -137,7 +138,8 @@ def _triangle(
     factors = np.array([[a, -one, -one], [b, one, none], [c, none, one]])
 
     def node(number: Indices) -> _Node:
-        tangent, turn = (slices.at_node(number, n) for n in (0, values["u_rateLayer"]))
+        tangent = slices.at_node(number, 0)
+        turn = slices.at_node(number, values["u_rateLayer"])
         moved = tangent[:, :3] * turn[:, 3:]
         by = np.einsum("nkc,nc->nk", places.by, moved)
         lengths = np.linalg.norm(moved, axis=1), np.sqrt((by**2).sum(axis=1) + by[:, 0] * by[:, 1])

@@ -102,7 +102,14 @@ class Fragments:
         """Yield parts of at most ``count`` fragments, with their slices."""
         for start in range(0, len(self), count):
             part = slice(start, start + count)
-            image, normal = (None if v is None else v[part] for v in (self.image, self.normal))
+            if self.image is None:
+                image = None
+            else:
+                image = self.image[part]
+            if self.normal is None:
+                normal = None
+            else:
+                normal = self.normal[part]
             if self.nodes is None:
                 nodes = None
             else:
@@ -112,7 +119,9 @@ class Fragments:
 
 def footprint(dx: Floats, dy: Floats) -> tuple[Floats, Floats]:
     """Return longest and shortest side of a pixel's footprint, (N,), by derivatives (N, C)."""
-    aa, bb, ab = (np.einsum("nc,nc->n", p, q) for p, q in ((dx, dx), (dy, dy), (dx, dy)))
+    aa = np.einsum("nc,nc->n", dx, dx)
+    bb = np.einsum("nc,nc->n", dy, dy)
+    ab = np.einsum("nc,nc->n", dx, dy)
     # |dx x dy|^2, whatever the number of channels is.
     square = np.maximum(aa * bb - ab * ab, 0.0)
     half = 0.5 * (aa + bb)

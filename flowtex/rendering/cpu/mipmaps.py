@@ -96,6 +96,7 @@ def _reduced(texels: Floats32) -> Floats32:
             x = (np.arange(count // 2) + 0.5) * (count / (count // 2)) - 0.5
             base = np.floor(x).astype(np.intp)
             late = (x - base).astype(np.float32).reshape([-1 if a == axis else 1 for a in range(4)])
-            before, after = (texels.take(base + k, axis=axis) for k in range(2))
+            before = texels.take(base, axis=axis)
+            after = texels.take(base + 1, axis=axis)
             texels = before * (1 - late) + after * late
     return texels

@@ -110,7 +110,9 @@ def _prepare(
     rows, seen = _rows(flat, triangles, size)
     triangles = triangles[seen]
     rows = rows[seen]
-    a, b, c = (flat[triangles[:, k]] for k in range(3))
+    a = flat[triangles[:, 0]]
+    b = flat[triangles[:, 1]]
+    c = flat[triangles[:, 2]]
     edges = np.stack([np.cross(b, c), np.cross(c, a), np.cross(a, b)], axis=1)
     determinant = np.einsum("nk,nk->n", edges[:, 0], a)
     solid = np.abs(determinant) > _slack(flat, triangles, size).max(axis=-1)
@@ -131,7 +133,8 @@ def _rows(flat: Floats, triangles: Indices, size: tuple[int, int]) -> tuple[Indi
     ahead = w > 0
     # A point behind the camera has no place in the picture; its triangle may be anywhere.
     position = np.divide(flat[:, :2], w[:, None], out=np.zeros((len(w), 2)), where=ahead[:, None])
-    low, high = (np.where(ahead[:, None], position, far)[triangles] for far in (-np.inf, np.inf))
+    low = np.where(ahead[:, None], position, -np.inf)[triangles]
+    high = np.where(ahead[:, None], position, np.inf)[triangles]
     low = low.min(axis=1)
     high = high.max(axis=1)
     first = np.ceil(np.clip(low - (0.5 + ROUNDING), 0, size))

@@ -400,7 +400,10 @@ def line_of(array: xr.DataArray, dim: str) -> AnyArray | None:
         return dates
     coordinate = coordinate_of(array, dim)
     if coordinate is None:
-        alike = [c for c in array.coords.values() if c.dims == (dim,)]
+        alike = []
+        for c in array.coords.values():
+            if c.dims == (dim,):
+                alike.append(c)
         if len(alike) != 1:
             return None
         coordinate = alike[0]

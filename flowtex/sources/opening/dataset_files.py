@@ -69,7 +69,8 @@ class Datasets(list["xr.Dataset"]):
         self, items: Iterable[xr.Dataset], closers: Iterable[Any] = (), *, recognised: bool = False
     ) -> None:
         super().__init__(items)
-        self.closers, self.recognised = tuple(closers), recognised
+        self.closers = tuple(closers)
+        self.recognised = recognised
         #: Names of axes along which a choice was used when the datasets were opened.
         self.used: set[str] = set()
 
@@ -88,7 +89,8 @@ def as_datasets(data: Any, record: Record | None = None, choice: Choice | None =
     choice = choice or Choice()
     if isinstance(data, Datasets) and data.recognised:
         return data
-    xarray, record = import_extra("xarray", "xarray"), record or Record()
+    xarray = import_extra("xarray", "xarray")
+    record = record or Record()
     result = []
     for ds in data if isinstance(data, (list, tuple)) else [data]:
         several = isinstance(data, (list, tuple)) and len(data) > 1
@@ -106,7 +108,10 @@ def as_datasets(data: Any, record: Record | None = None, choice: Choice | None =
     for ds in result:
         groups.setdefault(frozenset(ds.data_vars), []).append(ds)
     result = [ds for group in groups.values() for ds in _together(group, record)]
-    closers = data.closers if isinstance(data, Datasets) else ()
+    if isinstance(data, Datasets):
+        closers = data.closers
+    else:
+        closers = ()
     result = [as_points(ds, choice, record) for ds in result]
     known = Datasets(with_mesh_axes([_with_axes(ds) for ds in result]), closers, recognised=True)
     known.used = choice.used
@@ -119,7 +124,10 @@ def _one_version(ds: xr.Dataset, chosen: Container[str], record: Record) -> xr.D
     if not dim:
         return ds
     count = ds.sizes[dim]
-    names = ", ".join(map(str, ds[dim].values)) if dim in ds.coords else f"{count} versions"
+    if dim in ds.coords:
+        names = ", ".join(map(str, ds[dim].values))
+    else:
+        names = f"{count} versions"
     if "source" in ds.encoding and find_spec("dask") is not None:  # otherwise all of it is read
         ds = ds.chunk({d: 1 for d in ds.dims if TIMES.match(str(d))})
     with import_extra("xarray", "xarray").set_options(keep_attrs=True):
@@ -176,7 +184,10 @@ def of_tree(tree: xr.DataTree, file: Path | None = None) -> list[xr.Dataset]:
     groups = [path for path, ds in parts.items() if find_pairs([ds])]
     if len(groups) > 1 and groups[0] != tree.path:
         listed = ", ".join(groups)
-        example = f"tree[{groups[0]!r}]" if file is None else repr(f"{file}{groups[0]}")
+        if file is None:
+            example = f"tree[{groups[0]!r}]"
+        else:
+            example = repr(f"{file}{groups[0]}")
         raise FieldError(f"the groups {listed} have a velocity; give one, as in {example}")
     if groups:
         return [parts[groups[0]]]
@@ -188,7 +199,10 @@ def of_tree(tree: xr.DataTree, file: Path | None = None) -> list[xr.Dataset]:
 
 def _plain(ds: xr.Dataset) -> xr.Dataset:
     """Return a dataset of NumPy's types; dates with a zone are in UTC."""
-    own = [str(n) for n, a in ds.variables.items() if not isinstance(a.dtype, np.dtype)]
+    own = []
+    for n, a in ds.variables.items():
+        if not isinstance(a.dtype, np.dtype):
+            own.append(str(n))
     if not own:
         return ds
     plain = {}
@@ -228,10 +242,12 @@ def _dated(ds: xr.Dataset) -> xr.Dataset:
         if ds[name].dtype.kind == "O" and is_dates(ds[name]):
             continue
         dim = str(ds[name].dims[0])
-        rows = ds[name].values if ds[name].ndim == 1 else map(b"".join, ds[name].values)
-        texts = [
-            (row.decode() if isinstance(row, bytes) else str(row)).strip(" \0") for row in rows
-        ]
+        rows: Iterable[Any] = ds[name].values
+        if ds[name].ndim > 1:
+            rows = map(b"".join, ds[name].values)
+        texts = []
+        for row in rows:
+            texts.append((row.decode() if isinstance(row, bytes) else str(row)).strip(" \0"))
         dates = _dates_of(texts)
         if dates is not None and ds.sizes[dim] == len(dates):
             return ds.assign_coords({dim: (dim, dates, {"axis": "T"})})
@@ -297,7 +313,9 @@ def _with_axes(ds: xr.Dataset) -> xr.Dataset:
 def _time_axis(datasets: Sequence[xr.Dataset]) -> str:
     """Return the name of the axis of time, ``"time"`` where none is recognised."""
     axes = [_with_axes(ds).cf.axes.get("T", []) for ds in (datasets[0], datasets[-1])]
-    return str(axes[0][0]) if axes[0] and axes[0] == axes[-1] else "time"
+    if axes[0] and axes[0] == axes[-1]:
+        return str(axes[0][0])
+    return "time"
 
 
 def joined(datasets: Sequence[xr.Dataset], record: Record | None = None) -> xr.Dataset:
@@ -308,7 +326,8 @@ def joined(datasets: Sequence[xr.Dataset], record: Record | None = None) -> xr.D
     FieldError
         When the datasets are not steps of one series, such as on different grids.
     """
-    xarray, record = import_extra("xarray", "xarray"), record or Record()
+    xarray = import_extra("xarray", "xarray")
+    record = record or Record()
     datasets = [_decoded(ds) for ds in datasets]
     name = _time_axis(datasets)
     dates = _dates_in_names([Path(str(ds.encoding.get("source", ""))) for ds in datasets])
@@ -329,7 +348,9 @@ def joined(datasets: Sequence[xr.Dataset], record: Record | None = None) -> xr.D
 
 def _chunked(datasets: list[xr.Dataset]) -> list[xr.Dataset]:
     """Return datasets of arrays that are joined without reading all data, where Dask is present."""
-    return [ds.chunk() for ds in datasets] if find_spec("dask") is not None else datasets
+    if find_spec("dask") is not None:
+        return [ds.chunk() for ds in datasets]
+    return datasets
 
 
 def _alike(datasets: list[xr.Dataset], name: str, record: Record) -> list[xr.Dataset]:
@@ -341,7 +362,10 @@ def _alike(datasets: list[xr.Dataset], name: str, record: Record) -> list[xr.Dat
         if len(lines) < len(datasets):
             continue
         degrees = units.is_angle(str(datasets[0][dim].attrs.get("units", "")))
-        period = 360.0 if degrees and lines[0].dtype.kind in "fiu" else None
+        if degrees and lines[0].dtype.kind in "fiu":
+            period = 360.0
+        else:
+            period = None
         kept = lines[0]
         for line in lines[1:]:
             kept = kept[labels.match(kept, line, period).one]
@@ -353,7 +377,10 @@ def _alike(datasets: list[xr.Dataset], name: str, record: Record) -> list[xr.Dat
         parts = []
         for ds, line in zip(datasets, lines, strict=True):
             found = labels.match(kept, line, period).other
-            part = ds.isel({dim: as_slice(found)}) if not np.array_equal(line, kept) else ds
+            if not np.array_equal(line, kept):
+                part = ds.isel({dim: as_slice(found)})
+            else:
+                part = ds
             parts.append(part.assign_coords({dim: (dim, kept, datasets[0][dim].attrs)}))
         datasets = parts
     return datasets
@@ -363,10 +390,15 @@ def _dates_in_names(paths: Sequence[Path]) -> list[np.datetime64] | None:
     """Return the dates in the names of files, as in ``winds_20020101.nc``, all different."""
     matches = [re.search(r"(?<!\d)(\d{4})-?(\d{2})-?(\d{2})(?!\d)", path.stem) for path in paths]
     try:
-        dates = [np.datetime64("-".join(match.groups())) for match in matches if match]
+        dates = []
+        for match in matches:
+            if match:
+                dates.append(np.datetime64("-".join(match.groups())))
     except ValueError:
         return None
-    return dates if len(set(dates)) == len(paths) else None
+    if len(set(dates)) == len(paths):
+        return dates
+    return None
 
 
 def is_dataset_file(path: Path) -> bool:
@@ -391,7 +423,10 @@ def dataset_paths(given: Any) -> list[Path]:
     FieldError
         When it is no path or list of paths, or a path is invalid.
     """
-    items = given if isinstance(given, (list, tuple)) else [given]
+    if isinstance(given, (list, tuple)):
+        items = given
+    else:
+        items = [given]
     if not all(isinstance(item, (str, os.PathLike)) for item in items):
         raise FieldError(f"path is {brief(given)}; expected the path of a file, or a list of paths")
     paths = [Path(item).expanduser() for item in items]
@@ -399,14 +434,18 @@ def dataset_paths(given: Any) -> list[Path]:
         checked_source(path)
     files = [file_and_group(p)[0] for p in paths]
     all_exist = paths and all(map(is_dataset_file, files)) and all(file.exists() for file in files)
-    return paths if all_exist else []
+    if all_exist:
+        return paths
+    return []
 
 
 def common_name(paths: Sequence[Path]) -> str:
     """Return a word for captions: the common beginning of the names of files."""
     stems = [path.stem for path in paths]
     shared = os.path.commonprefix(stems)  # noqa: RUF071
-    return shared.rstrip("_-. 0123456789") if len(stems) > 1 and len(shared) > 2 else stems[0]
+    if len(stems) > 1 and len(shared) > 2:
+        return shared.rstrip("_-. 0123456789")
+    return stems[0]
 
 
 def belong_together(paths: Sequence[Path]) -> bool:
@@ -490,7 +529,11 @@ def _closers(parts: Iterable[Any]) -> list[Callable[[], None]]:
 
     The method ``close`` works only once.
     """
-    return [part._close for part in parts if part._close is not None]
+    found = []
+    for part in parts:
+        if part._close is not None:
+            found.append(part._close)
+    return found
 
 
 def import_cfgrib() -> Any:

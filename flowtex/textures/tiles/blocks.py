@@ -176,9 +176,8 @@ def triangle_roughness(field: FlowField, triangles: Indices, parts: list[Indices
     a, b, c, d = points[nodes.T]
     normal = triangle_normals(points, triangles)[here]
     area = np.maximum(dot(normal, normal), np.finfo(float).tiny)
-    second, third = (
-        dot(np.cross(*sides), normal) / area for sides in ((d - a, c - a), (b - a, d - a))
-    )
+    second = dot(np.cross(d - a, c - a), normal) / area
+    third = dot(np.cross(b - a, d - a), normal) / area
     weights = np.stack([second + third - 1, -second, -third, np.ones_like(second)], axis=-1)
     speed, length = norm(velocity), norm(c - b)
     rest = REST_SPEED * float(np.percentile(speed[field.valid[0]], MOST_SHARE))

@@ -170,7 +170,8 @@ class Pyramid:
     @property
     def blocks(self) -> tuple[int, int]:
         """Rows and columns of blocks at level 0."""
-        rows, columns = (max(-(-(n - 1) // BLOCK_CELLS), 1) for n in self.nodes)
+        rows = max(-(-(self.nodes[0] - 1) // BLOCK_CELLS), 1)
+        columns = max(-(-(self.nodes[1] - 1) // BLOCK_CELLS), 1)
         return rows, columns
 
     def visible_blocks(self, places: Floats32) -> Bools:
@@ -239,7 +240,8 @@ class Pyramid:
 
     def line_numbers(self, level: int) -> tuple[Indices, Indices]:
         """Return the numbers of the rows and columns of a level in level 0."""
-        rows, columns = (level_lines(n, level) for n in self.nodes)
+        rows = level_lines(self.nodes[0], level)
+        columns = level_lines(self.nodes[1], level)
         return rows, columns
 
     def blocks_of(self, key: TileKey | None) -> tuple[slice, slice]:
@@ -482,9 +484,8 @@ class Pyramid:
     def periods(self) -> tuple[Floats, Floats]:
         """Vectors from the first line of an axis to the last, (3,), for both axes."""
         p = self.field.points
-        rows, columns = (
-            np.mean(np.take(p, -1, axis=axis) - np.take(p, 0, axis=axis), axis=0) for axis in (0, 1)
-        )
+        rows = np.mean(np.take(p, -1, axis=0) - np.take(p, 0, axis=0), axis=0)
+        columns = np.mean(np.take(p, -1, axis=1) - np.take(p, 0, axis=1), axis=0)
         return rows, columns
 
     def _level(self, level: int) -> _Level:

@@ -63,11 +63,10 @@ def ends_of(values: Floats, *, robust: bool) -> tuple[float, float] | None:
     values = values[np.isfinite(values)]
     if not values.size:
         return None
-    low, high = (
-        np.percentile(values, ROBUST_PERCENTILES)
-        if robust
-        else np.array([values.min(), values.max()])
-    )
+    if robust:
+        low, high = np.percentile(values, ROBUST_PERCENTILES)
+    else:
+        low, high = np.array([values.min(), values.max()])
     return float(low), float(high)
 
 
