@@ -209,6 +209,8 @@ def test_the_blocks_of_a_page_run(
     names: dict[str, Any] = {}
     try:
         for number, block in enumerate(blocks(page), start=1):
+            if "cartopy" in block:
+                pytest.importorskip("cartopy")
             exec(compile(smaller(block), f"{page.name}, block {number}", "exec"), names)
     finally:
         close_all(names)

@@ -54,7 +54,7 @@ def test_a_widget_looks_as_the_plotter(notebook: Any) -> None:
     notebook.camera.focal_point = (1.5, 0.5, 0.0)
     notebook.camera.parallel_scale = 0.125
     with warnings.catch_warnings():
-        warnings.simplefilter("error")
+        warnings.simplefilter("error", UserWarning)  # old ipywidgets use what is deprecated today
         widget = shown(notebook, jupyter_backend="flowtex")
     assert isinstance(widget, FlowWidget)
     assert dict(widget.settings) == dict(handle.settings)

@@ -247,7 +247,7 @@ def valid_range(array: xr.DataArray) -> tuple[float, float] | None:
 #: ranges of integers, and 1e10.
 _USUAL = re.compile(
     r"-99\.[09]+|-?9{3,}\.[09]+|-(7{3,}|8{3,})\.[078]+|-?3276[78]\.0|65535\.0"
-    r"|-?2\.1474836e\+09|-?1e\+10"
+    r"|-?2147483600\.0|-?10000000000\.0"
 )
 #: From this magnitude on, above the speed of light in cm/s, any value may stand for missing data.
 #: Below it an inlet or a moving wall may look the same.
@@ -289,7 +289,9 @@ def undeclared_fill(values: Floats) -> float | None:
         most = float(finite.max(initial=0.0))
     for value in sorted({least, most}, key=abs, reverse=True):
         is_huge = abs(value) >= _HUGE
-        if not (is_huge or _USUAL.fullmatch(str(np.float32(value)))):
+        # Versions of NumPy differ in when `str` writes an exponent.
+        digits = np.format_float_positional(np.float32(value), trim="0")
+        if not (is_huge or _USUAL.fullmatch(digits)):
             continue
         same = finite == value
         count = int(np.count_nonzero(same))
