@@ -34,6 +34,8 @@ if TYPE_CHECKING:
 
 #: Names, and words of standard names, of vertical velocities.
 NAMES = re.compile(r"^(w|wo|wa|wap|omega|w_?vel|vvel|vovecrtz|w_velocity)$", re.I)
+#: Options that a section cannot follow.
+HORIZONTAL_OPTIONS = ("components", "max_edge")
 LONGEST_NAME = 40  #: Longest name that fits beside a colour bar.
 HORIZONTAL = re.compile(r"eastward|northward|zonal|meridional|[xy]_(velocity|stress)", re.I)
 WORDS = re.compile(r"upward|downward|vertical|tendency_of_air_pressure")
@@ -87,11 +89,21 @@ def read_section(
     Raises
     ------
     FieldError
-        When a component does not exist, the two have different dimensions, or the section has no
-        coordinates that can be drawn.
+        When a component does not exist, the two have different dimensions, the section has no
+        coordinates that can be drawn, or an option is of horizontal flows only.
     """
-    one, two = (variable(datasets, str(name)) for name in two_names(options.vectors))
-    u, v, choice = str(one.name), str(two.name), axes.Choice.of(options)
+    for option in HORIZONTAL_OPTIONS:
+        if getattr(options, option) is not None:
+            raise FieldError(
+                f"{option} applies to horizontal flows, but {options.vectors} lie in a vertical "
+                "section; omit it"
+            )
+    name_along, name_up = two_names(options.vectors)
+    one = variable(datasets, str(name_along))
+    two = variable(datasets, str(name_up))
+    u = str(one.name)
+    v = str(two.name)
+    choice = axes.Choice.of(options)
     if set(one.dims) != set(two.dims):
         raise FieldError(
             f"{u} has {', '.join(map(str, one.dims))} and {v} {', '.join(map(str, two.dims))}; "

@@ -151,6 +151,13 @@ def test_fill_values_of_a_section_are_blank() -> None:
     np.testing.assert_array_equal(field.valid, np.broadcast_to(LAT < 30.0, field.shape))
 
 
+@pytest.mark.parametrize("option", [{"components": "polar"}, {"max_edge": 2.0}])
+def test_options_of_horizontal_flows_are_refused(option: dict[str, Any]) -> None:
+    (name,) = option
+    with pytest.raises(FieldError, match=f"^{name} applies to horizontal flows.*omit it$"):
+        FlowField.from_xarray(section(OMEGA, HPA), "v", "w", **option)
+
+
 def test_components_of_a_section_are_paired_by_labels() -> None:
     ds = section(OMEGA, HPA)
     ds["w"] = (ds["w"] + ds["lat"] + ds["level"]).assign_attrs(OMEGA)
