@@ -46,6 +46,10 @@ MODELS = (
     ("TELEMAC", (TELEMAC,), (("x", "y"),)),
     ("ADCIRC", ("element",), (("x", "y"),)),
 )
+#: Names of the corners of faces in files without a convention.
+NAMED_FACES = re.compile(
+    r"^(faces?|tri(angle)?s?|cells?|elem(ent)?s?|connectivity|simplices)$", re.IGNORECASE
+)
 #: Variables with the number of corners of each face.
 COUNTS = {"verticesOnCell": "nEdgesOnCell", "cell_node": "cell_Nvert"}
 #: Most faces of a grid that covers the globe, and names of their dimension.
@@ -63,7 +67,7 @@ def find_mesh(datasets: Sequence[xr.Dataset]) -> Mesh | None:
     for ds in datasets:
         for name in ds.variables:
             variables.setdefault(str(name), ds[name])
-    for find in (_ugrid, _of_models, _bounded, points_in):
+    for find in (_ugrid, _of_models, _bounded, _of_named_faces, points_in):
         for mesh in find(variables):
             return mesh
     return None
@@ -118,6 +122,17 @@ def _of_models(variables: Mapping[str, xr.DataArray]) -> Iterator[Mesh]:
             counts = variables.get(COUNTS.get(str(corners.name), ""))
             first = int(corners.attrs.get("start_index", 1))
             yield Mesh(kind, longitude, latitude, corners, counts, first)
+
+
+def _of_named_faces(variables: dict[str, xr.DataArray]) -> Iterator[Mesh]:
+    """Yield meshes of triangles or quadrangles whose corners only have a usual name."""
+    for x, y in position_pairs(list(variables.values())):
+        for name, corners in variables.items():
+            if not NAMED_FACES.match(name) or corners.dtype.kind not in "iu":
+                continue
+            is_table = corners.ndim == 2 and corners.shape[1] in (3, 4)
+            if is_table and x.ndim == 1 and x.dims[0] not in corners.dims:
+                yield Mesh("faces", x, y, corners, first=int(corners.attrs.get("start_index", 1)))
 
 
 def _bounded(variables: Mapping[str, xr.DataArray]) -> Iterator[Mesh]:

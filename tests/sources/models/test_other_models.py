@@ -87,3 +87,40 @@ def test_telemac_uses_its_triangles() -> None:
     assert field.triangles is not None
     assert {*map(frozenset, field.triangles.tolist())} == {*map(frozenset, (faces - 1).tolist())}
     assert np.allclose(field.velocity[0][0, :, :2], np.stack([x, y], -1))
+
+
+def ring() -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return coordinates of nodes around a hole, (N,) each, and triangles, (M, 3), from 0."""
+    turn, radius = np.meshgrid(2 * np.pi * np.arange(12) / 12, [1.0, 2.0, 3.0])
+    number = np.arange(36).reshape(3, 12)
+    inner, outer = number[:-1], number[1:]
+    following = np.roll(number, -1, axis=1)
+    one = np.stack([inner, outer, following[1:]], axis=-1).reshape(-1, 3)
+    two = np.stack([inner, following[1:], following[:-1]], axis=-1).reshape(-1, 3)
+    return (radius * np.cos(turn)).ravel(), (radius * np.sin(turn)).ravel(), np.vstack([one, two])
+
+
+@pytest.mark.parametrize(("name", "first"), [("faces", 0), ("triangles", 1), ("elements", 1)])
+def test_faces_without_a_convention_are_taken_by_their_name(name: str, first: int) -> None:
+    x, y, triangles = ring()
+    ds = xr.Dataset(
+        {
+            "u": ("node", -y, {"units": "m/s"}),
+            "v": ("node", x, {"units": "m/s"}),
+            "x": ("node", x, {"units": "m"}),
+            "y": ("node", y, {"units": "m"}),
+            name: (("cell", "corner"), (triangles + first).astype(np.int32)),
+        }
+    )
+    field = FlowField.from_xarray(ds)
+    assert field.triangles is not None
+    assert {*map(frozenset, field.triangles.tolist())} == {*map(frozenset, triangles.tolist())}
+    np.testing.assert_allclose(field.points[0, :, :2], np.column_stack([x, y]))
+    np.testing.assert_allclose(field.velocity[0, 0, :, :2], np.column_stack([-y, x]))
+
+
+@needs_data
+def test_faces_of_a_real_ring_leave_its_hole() -> None:
+    ds = xr.open_dataset(FORMS / "tri_ring.nc")
+    field = FlowField.from_file(FORMS / "tri_ring.nc")
+    assert field.triangles is not None and len(field.triangles) == ds.sizes["nele"] == 360
