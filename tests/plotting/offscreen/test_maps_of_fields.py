@@ -199,7 +199,7 @@ TURNED: dict[str, tuple[Floats, str, Any]] = {
     "Mercator": (np.arange(0.0, 360.0, 5.0), "+proj=merc +lon_0=180", ccrs.Mercator()),
     "region in two parts": (
         np.arange(-60.0, 61.0, 4.0),
-        "+proj=eqc +lon_0=180",
+        "+proj=eqc +lon_0=180 +R=6371000",  # newer PROJ has an ellipsoid without it
         ccrs.PlateCarree(),
     ),
 }
