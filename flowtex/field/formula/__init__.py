@@ -120,7 +120,7 @@ class Expression:
         Raises
         ------
         FieldError
-            When it is none of these, has another name, or is not an expression.
+            When the source has another type, contains another name, or cannot be parsed.
         """
         if isinstance(source, str) or is_number(source) or hasattr(source, "free_symbols"):
             tree = parse(str(source), names)

@@ -99,7 +99,7 @@ def slice_of(raw: Any) -> Slice:
     Raises
     ------
     FieldError
-        When it is none of these, or the normal is zero.
+        When the value has another form, or the normal is zero.
     """
     normal: Any = raw
     point: Any = None
