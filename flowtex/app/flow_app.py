@@ -222,7 +222,7 @@ class Viewpoint(Controller):
         player.playing = False
         self.viewport.clock = float(saved.get("clock", 0.0))
         if not field.steady:
-            player.go_to(float(saved.get("time", field.times[0])))
+            player.go_to(float(saved.get("time", field.first_time)))
         if saved.get("camera"):
             self.area.look(saved["camera"])
 

@@ -29,7 +29,15 @@ from flowtex.field.node_surface import IndexVelocity
 from flowtex.field.plain_arrays import plain_grid
 from flowtex.field.quantities import FieldQuantities
 from flowtex.field.scalars import Scalars
-from flowtex.field.steps import LazySteps, Steps, map_steps, moves, scaled_steps, typical_steps
+from flowtex.field.steps import (
+    LazySteps,
+    Steps,
+    first_moving,
+    map_steps,
+    moves,
+    scaled_steps,
+    typical_steps,
+)
 from flowtex.field.triangles.triangle_arguments import triangle_nodes
 from flowtex.field.triangles.triangle_surface import Surface, TriangleSurface
 from flowtex.field.validation import ALL_AT_REST, prepared
@@ -545,6 +553,11 @@ class FlowField(FieldConstructors, FieldQuantities):
         if late:
             return self.at_steps(typical_steps(len(self.times)))
         return self
+
+    @cached_property
+    def first_time(self) -> float:
+        """The time that is shown by default: the first one at which something moves."""
+        return float(self.times[first_moving(self.velocity)])
 
     def step_number(self, step: int) -> int:
         """Return the index of a time step from 0; negative numbers count from the end.

@@ -133,7 +133,7 @@ def values_at(field: Any, index: ArrayLike, time: Any = None) -> PointValues:
 def _moment(field: Any, time: Any) -> Any:
     """Return a time for the finest level of a field that may itself have only one step."""
     if time is None or field.steady:
-        return float(field.times[0])
+        return field.first_time
     return time
 
 
@@ -150,7 +150,7 @@ def _with_others(
 def _values_at(field: Any, index: ArrayLike, time: Any) -> PointValues:
     """Return the values at (j, i) from the nodes that are in memory."""
     point = value_point(field, index)
-    moment = float(field.times[0])
+    moment = field.first_time
     if time is not None and not field.steady:
         moment = time_within(field.start, field.times, time)
     between = steps_around(field.times, moment)
@@ -401,7 +401,8 @@ class FieldQuantities:
             argument is the time.
         time
             Time in the field's unit, or a date if the times are dates; values are interpolated. The
-            first one by default, which pictures, axes and the widget show too.
+            first one at which something moves by default, which pictures, axes and the widget show
+            too.
 
         Returns
         -------

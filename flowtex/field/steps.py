@@ -14,6 +14,8 @@ from flowtex._util.cache import ByteCache
 KEPT_BYTES = 256_000_000  #: Bytes of steps that stay in memory.
 MOST_KEPT = 8  #: Most steps that stay in memory.
 MOST_EXAMINED = 4_000_000  #: Most values of a series that are examined before it is drawn.
+#: Most lazy steps that are read one after the other to find one that moves.
+MOST_AT_REST = 16
 
 
 class LazySteps:
@@ -175,12 +177,16 @@ def moves(steps: Steps) -> bool:
 
 
 def first_moving(steps: Steps) -> int:
-    """Return the first step at which something moves, of lazy ones a typical one; 0 if none."""
-    numbers: Sequence[int] = range(len(steps))
-    if isinstance(steps, LazySteps):
-        numbers = typical_steps(len(steps))
-    if len(numbers) == 1:
+    """Return the first step at which something moves, 0 if none.
+
+    Of lazy steps only some at the beginning are read, then typical ones.
+    """
+    count = len(steps)
+    if count == 1:
         return 0
+    numbers: Sequence[int] = range(count)
+    if isinstance(steps, LazySteps):
+        numbers = sorted({*range(min(count, MOST_AT_REST)), *typical_steps(count)})
     for number in numbers:
         if np.nan_to_num(steps[number]).any():
             return number

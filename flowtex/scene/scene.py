@@ -31,7 +31,7 @@ from flowtex.field.derived import SIGNED, steps_of
 from flowtex.field.folds import FOLDED, mixes_at_folds
 from flowtex.field.interpolation import at_moment, steps_around
 from flowtex.field.options import FieldOptions
-from flowtex.field.steps import Steps, first_moving
+from flowtex.field.steps import Steps
 from flowtex.rendering.cpu.shade import mean_colours
 from flowtex.scene.fields import is_tiled, read_field, share_field, with_scalars
 from flowtex.scene.options import ROBUST, SPEED, Appearance, Options
@@ -99,7 +99,7 @@ class Scene:
         self._textures: TextureSet | None = None
         self._version = 0  # of the textures
         self._changed = Signal()
-        self._show_time(float(field.times[first_moving(field.velocity)]))
+        self._show_time(field.first_time)
         self._end = self.settings.observe(self._setting_changed)
 
     @classmethod

@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
 
 import flowtex
+from flowtex.field.steps import LazySteps
+from flowtex.host.flow_widget import FlowWidget
 from flowtex.scene.scene import Scene
 from flowtex.settings import Settings
 from flowtex.textures.images import ImageError
@@ -95,3 +98,20 @@ def test_the_first_time_shown_is_when_something_moves() -> None:
     assert scene.time == 5.0
     scene.time = "first"
     assert scene.time == 0.0
+
+
+@pytest.mark.parametrize("lazy", [False, True])
+def test_pictures_and_values_have_one_default_time(lazy: bool) -> None:
+    """The first time that moves is shown, by a plotter, a widget, a page and `field.at`."""
+    grid = np.stack(np.meshgrid(np.linspace(0, 1, 5), np.linspace(0, 1, 4)), axis=-1)
+    strength = np.array([0.0, 2.0, 1.0, 1.0, 1.0])
+    velocity = strength[:, None, None, None] * np.ones((5, 4, 5, 2))
+    steps: Any = velocity
+    if lazy:
+        steps = LazySteps(5, lambda step: velocity[step])
+    field = flowtex.FlowField.from_arrays(grid, steps, times=[0.0, 1.0, 2.0, 3.0, 4.0])
+    assert Scene(field).time == field.first_time == 1.0
+    value = field.at(0.5, 0.5)
+    assert value is not None and value.time == 1.0
+    assert value.speed == pytest.approx(np.hypot(2.0, 2.0))
+    assert FlowWidget(field).time == 1.0

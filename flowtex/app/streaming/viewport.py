@@ -23,7 +23,7 @@ from flowtex._util.cache import WeakCache
 from flowtex.field import FlowField
 from flowtex.field.derived import steps_of
 from flowtex.field.interpolation import steps_around
-from flowtex.field.steps import LazySteps, first_moving
+from flowtex.field.steps import LazySteps
 from flowtex.plotting.handle import FlowHandle
 from flowtex.rendering.camera import Camera, apply_camera, face_alike
 from flowtex.rendering.vtk.area import PicturePart
@@ -463,7 +463,7 @@ def first_time(scene: Scene, field: FlowField, *, keep: bool) -> float:
     That is the first time at which something moves.
     """
     if not keep:
-        return float(field.times[first_moving(field.velocity)])
+        return field.first_time
     first = float(field.times[0])
     return min(max(scene.time, first), float(field.times[-1]))
 

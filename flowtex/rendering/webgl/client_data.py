@@ -22,7 +22,6 @@ from flowtex._util.colours import CMAPS, ENTRIES, ColourScale, colour_table, is_
 from flowtex.field import FlowField
 from flowtex.field.formula import Formula
 from flowtex.field.interpolation import steps_around
-from flowtex.field.steps import first_moving
 from flowtex.rendering.camera import CAMERA_LIMITS, Camera, CameraValues
 from flowtex.rendering.shaders import shader_text
 from flowtex.rendering.tile_choice import CELL_PIXELS
@@ -162,7 +161,7 @@ class ClientData:
         """The time that is shown first: of those that are sent, the first when something moves."""
         if self.chosen:
             return float(self.times[0])
-        return float(self.times[first_moving(self.field.velocity)])
+        return self.field.first_time
 
     def first_camera(self, aspect: float = FIRST_ASPECT) -> Camera:
         """Return the camera that shows the whole surface in a picture of a shape."""
