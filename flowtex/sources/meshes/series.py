@@ -23,7 +23,13 @@ from flowtex.field.interpolation import at_moment, steps_around
 from flowtex.field.options import FieldOptions
 from flowtex.sources.meshes import parts
 from flowtex.sources.meshes.parts import TimeStep
-from flowtex.sources.meshes.vectors import candidates, catalogue, select_velocity, values_of
+from flowtex.sources.meshes.vectors import (
+    MeshArray,
+    candidates,
+    catalogue,
+    select_velocity,
+    values_of,
+)
 from flowtex.sources.notices import Record
 
 #: Names of the stress that a flow exerts on a wall.
@@ -93,9 +99,14 @@ def with_velocity(
 ) -> tuple[str | None, Iterator[TimeStep]]:
     """Return the name of the velocity, if it is known, and the steps that have it."""
     vectors = options.vectors
-    if vectors is None and not is_cut(options):
-        vectors = wall_stress(parts.time_steps(source, options.block), record)
     steps = parts.time_steps(source, options.block, cut=is_cut(options), record=record)
+    if vectors is None and not is_cut(options):
+        first = next(steps, None)
+        if first is not None:
+            # The first step usually moves: then no step is read twice.
+            steps = chain([first], steps)
+            if _may_be_wall(first.grid):
+                vectors = wall_stress(parts.time_steps(source, options.block), record)
     return vectors, having(steps, vectors, record)
 
 
@@ -108,15 +119,9 @@ def wall_stress(steps: Iterator[TimeStep], record: Record) -> str | None:
     """Return the name of the stress on a surface where the velocity is always zero, if any."""
     for step in steps:
         grid = step.grid
-        found = candidates(grid)
-        if not found:
-            continue
-        if grid.max_cell_dimensionality != 2:
+        if not _may_be_wall(grid):
             return None
-        stresses = [array for array in found if WALL_STRESS.fullmatch(array.name)]
-        others = [array for array in found if array not in stresses]
-        if any(np.nan_to_num(values_of(grid, array)).any() for array in others):
-            return None
+        stresses, others = _stresses_and_others(grid)
         for array in stresses:
             if others and np.nan_to_num(values_of(grid, array)).any():
                 name = others[0].name
@@ -124,6 +129,26 @@ def wall_stress(steps: Iterator[TimeStep], record: Record) -> str | None:
                 record("select", f'{text}other one, vectors="{name}"', notable=True)
                 return array.name
     return None
+
+
+def _may_be_wall(grid: Any) -> bool:
+    """Return whether no velocity moves on a surface, or whether a mesh has no vectors."""
+    stresses, others = _stresses_and_others(grid)
+    if (stresses or others) and grid.max_cell_dimensionality != 2:
+        return False
+    return not any(np.nan_to_num(values_of(grid, array)).any() for array in others)
+
+
+def _stresses_and_others(grid: Any) -> tuple[list[MeshArray], list[MeshArray]]:
+    """Return the vectors that are a stress on a wall by their names, and the other ones."""
+    stresses = []
+    others = []
+    for array in candidates(grid):
+        if WALL_STRESS.fullmatch(array.name):
+            stresses.append(array)
+        else:
+            others.append(array)
+    return stresses, others
 
 
 def having(steps: Iterator[TimeStep], vectors: str | None, record: Record) -> Iterator[TimeStep]:

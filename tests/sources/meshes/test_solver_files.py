@@ -275,3 +275,19 @@ def test_a_case_of_openfoam_is_named_by_a_file_in_it(tmp_path: Path) -> None:
     (tmp_path / "x.foam").touch()
     with pytest.raises(FieldError, match="its folder has no folder constant"):
         FlowField.from_file(tmp_path / "x.foam")
+
+
+def test_each_step_of_a_file_is_read_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    mesh = pv.Plane(i_resolution=4, j_resolution=4)
+    mesh.point_data["U"] = np.tile([1.0, 0.0, 0.0], (mesh.n_points, 1))
+    mesh.save(tmp_path / "plane.vtp")
+    reads = []
+    read = pv.XMLPolyDataReader.read
+
+    def counted(reader: Any) -> Any:
+        reads.append(reader)
+        return read(reader)
+
+    monkeypatch.setattr(pv.XMLPolyDataReader, "read", counted)
+    FlowField.from_file(tmp_path / "plane.vtp")
+    assert len(reads) == 1
