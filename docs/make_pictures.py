@@ -489,7 +489,8 @@ def webmap() -> Picture:
 
 def _coasts(color: str) -> dict[str, Any]:
     """Return a style of MapLibre's with coasts, which asks for nothing from the network."""
-    from flowtex.field.earth import Projection, coastlines
+    from flowtex.field.earth.map_lines import coastlines
+    from flowtex.field.earth.projection import Projection
 
     lines = coastlines(Projection("globe"))
     x, y, z = lines.points.T

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from flowtex import FlowField
-from flowtex.field.earth import Projection
+from flowtex.field.earth.projection import Projection
 
 
 def winds(name: str = "globe", cells: int = 24) -> FlowField:

@@ -9,7 +9,7 @@ from triangle_meshes import cube, polygon, random_plane, soup, sphere, tube
 
 from flowtex import FlowField
 from flowtex._util.array_types import Floats
-from flowtex.field.earth import Projection
+from flowtex.field.earth.projection import Projection
 from flowtex.field.uncertainty import with_uncertainty
 
 

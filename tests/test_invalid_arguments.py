@@ -19,7 +19,7 @@ from matplotlib.figure import Figure
 import flowtex
 import flowtex.xarray
 from flowtex import FieldError, FlowField, TraceSlices
-from flowtex.field.earth import Projection
+from flowtex.field.earth.projection import Projection
 from flowtex.field.formula.make import line_field
 from flowtex.field.uncertainty import with_uncertainty
 from flowtex.rendering.camera import Camera

@@ -23,7 +23,8 @@ from typing import TYPE_CHECKING, Any
 
 from cyclopts import App, CycloptsError
 
-from flowtex._util.child import FORKS, fork_server
+from flowtex._util.child.child import FORKS
+from flowtex._util.child.fork_server import fork_server
 from flowtex._util.progress import waiting
 from flowtex._util.terminal import Ended, ended_by_signals
 from flowtex.cli.console import announcer, complain, describe, require_app, say

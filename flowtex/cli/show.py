@@ -24,7 +24,7 @@ from flowtex.cli.options import (
     pixels,
 )
 from flowtex.examples import NAMES
-from flowtex.field.earth import GLOBE
+from flowtex.field.earth.projection import GLOBE
 from flowtex.field.formula.make import KNOWN
 
 if TYPE_CHECKING:

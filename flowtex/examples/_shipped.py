@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from flowtex._util.array_types import AnyArray, Floats
 from flowtex.errors import import_extra
-from flowtex.field.earth import DEGREE
+from flowtex.field.earth.projection import DEGREE
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -18,11 +18,11 @@ from flowtex._util.arguments import checked_count, is_number
 from flowtex._util.array_types import Bools, Floats, Indices
 from flowtex.errors import FieldError, notify
 from flowtex.field.constructors import FieldConstructors
-from flowtex.field.earth import Projection
+from flowtex.field.earth.projection import Projection
 from flowtex.field.field_arrays import NOTABLE_SHARE, NOTHING, FieldArrays, Reading, SectionAxes
 from flowtex.field.finer import FINEST
 from flowtex.field.folds import with_faces
-from flowtex.field.formula import Formula
+from flowtex.field.formula.formula import Formula
 from flowtex.field.grids.grid_nodes import grid_nodes
 from flowtex.field.grids.grid_surface import GridSurface
 from flowtex.field.node_surface import IndexVelocity

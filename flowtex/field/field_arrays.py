@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 
 from numpy.typing import ArrayLike
 
-from flowtex.field.earth import Projection
+from flowtex.field.earth.projection import Projection
 
 #: Share of the flow normal to the surface from which on the speed in it has another name. A curved
 #: mesh alone has 1 or 2 %; at 5 % the speeds differ by a thousandth.

@@ -23,7 +23,7 @@ from flowtex._util.cache import WeakCache
 from flowtex.errors import FieldError
 from flowtex.field.constructors import FieldConstructors
 from flowtex.field.derived.gradient import true_positions
-from flowtex.field.earth import EARTH_RADIUS, GLOBE, Projection
+from flowtex.field.earth.projection import EARTH_RADIUS, GLOBE, Projection
 from flowtex.field.triangles.triangle_nodes import solid_triangles
 from flowtex.field.triangles.triangle_surface import Surface
 

@@ -15,7 +15,8 @@ from flowtex._util.array_types import Floats
 from flowtex.errors import FieldError
 from flowtex.field.constructors import FieldConstructors
 from flowtex.field.dates import time_within
-from flowtex.field.derived import (
+from flowtex.field.derived.gradient import true_positions
+from flowtex.field.derived.quantities import (
     FOLLOWED,
     LONG_NAMES,
     derived_steps,
@@ -23,8 +24,7 @@ from flowtex.field.derived import (
     followed_steps,
     magnitude_label,
 )
-from flowtex.field.derived.gradient import true_positions
-from flowtex.field.earth import Projection
+from flowtex.field.earth.projection import Projection
 from flowtex.field.finer import check_derivable, finest_of
 from flowtex.field.grids.grid_nodes import weighted_axis
 from flowtex.field.interpolation import at_moment, steps_around

@@ -19,7 +19,7 @@ from flowtex._util.cache import ByteCache
 from flowtex._util.colours import ENTRIES, rgb
 from flowtex._util.progress import check, pool, stoppable, track
 from flowtex.field import FlowField
-from flowtex.field.derived import steps_of
+from flowtex.field.derived.quantities import steps_of
 from flowtex.rendering.webgl.bodies import Bodies
 from flowtex.rendering.webgl.client_data import ClientData, Colours, tile_parts
 from flowtex.rendering.webgl.marks import MARK_PARTS, Marks

@@ -12,7 +12,7 @@ import numpy as np
 from flowtex._util.array_types import Bools, Floats, Indices
 from flowtex.field import FlowField
 from flowtex.field.derived.gradient import true_positions
-from flowtex.field.earth import Projection
+from flowtex.field.earth.projection import Projection
 from flowtex.field.finer import FinePart, Finest, finest_of
 from flowtex.field.grids.grid_surface import GridSurface
 from flowtex.field.locate import EARTH, Locator

@@ -35,7 +35,7 @@ from flowtex._util.cache import digest
 from flowtex.errors import import_extra
 from flowtex.field import FlowField
 from flowtex.field.dates import date_of, written_date
-from flowtex.field.earth import Projection
+from flowtex.field.earth.projection import Projection
 from flowtex.field.steps import Nodes
 from flowtex.pyramid.places import FORMAT, DamageError, PyramidError
 from flowtex.pyramid.source import NodeSource, periods_of

@@ -23,7 +23,7 @@ import numpy as np
 from flowtex._util.array_types import Floats, Floats32, Indices
 from flowtex._util.progress import pool
 from flowtex.errors import FieldError, import_extra
-from flowtex.field.derived import steps_of
+from flowtex.field.derived.quantities import steps_of
 from flowtex.field.steps import Nodes, typical_steps
 from flowtex.pyramid.layout import (
     DIGESTS,

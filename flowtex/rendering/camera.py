@@ -23,7 +23,7 @@ from flowtex._util.array_types import Floats
 from flowtex._util.written import number_or_text
 from flowtex.errors import FieldError
 from flowtex.field import Surface
-from flowtex.field.earth import EARTH_RADIUS
+from flowtex.field.earth.projection import EARTH_RADIUS
 
 Point = tuple[float, float, float]
 CameraValues: TypeAlias = dict[str, Any]  #: Attributes of a camera by name, for JSON.

@@ -15,8 +15,9 @@ from flowtex._util.arrays import bounds, norm
 from flowtex._util.cache import WeakCache
 from flowtex._util.colours import is_light, rgb
 from flowtex.field import FlowField
-from flowtex.field.earth import EARTH_RADIUS, MapLines, coastlines, graticule
+from flowtex.field.earth.map_lines import MapLines, coastlines, graticule
 from flowtex.field.earth.on_land import on_land
+from flowtex.field.earth.projection import EARTH_RADIUS
 from flowtex.field.validation import NO_DATA
 
 

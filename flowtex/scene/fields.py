@@ -16,7 +16,7 @@ from flowtex._util.arguments import checked_source
 from flowtex._util.cache import ByteCache, WeakCache, digest
 from flowtex.errors import FieldError
 from flowtex.field import FlowField
-from flowtex.field.derived import DERIVED, with_vector_scalar
+from flowtex.field.derived.quantities import DERIVED, with_vector_scalar
 from flowtex.field.finer import finest_of
 from flowtex.field.options import OF_MESHES, FieldOptions
 from flowtex.field.steps import LazySteps

@@ -27,7 +27,7 @@ from flowtex._util.colours import (
 )
 from flowtex.errors import FieldError, notify, raise_faults
 from flowtex.field import FlowField, Surface
-from flowtex.field.derived import COMPONENTS, SIGNED, component_name
+from flowtex.field.derived.quantities import COMPONENTS, SIGNED, component_name
 from flowtex.field.options import FieldOptions, option
 from flowtex.field.validation import with_gaps
 from flowtex.rendering.camera import CAMERA_LIMITS, Camera, read_camera

@@ -10,7 +10,8 @@ from typing import Any, TypeAlias
 import numpy as np
 
 from flowtex._util.array_types import Bools, Floats, Indices
-from flowtex.field.earth import GLOBE, NAMES, Projection, between, tears
+from flowtex.field.earth.projection import GLOBE, NAMES, Projection
+from flowtex.field.earth.tears import between, tears
 from flowtex.field.grids.grid_nodes import find_closure
 from flowtex.sources.datasets.coordinates import Places
 

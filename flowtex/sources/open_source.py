@@ -18,7 +18,7 @@ import numpy as np
 
 from flowtex._util.forks import ProcessLock
 from flowtex.errors import FieldError, Notice
-from flowtex.field.earth import GLOBE, NAMES
+from flowtex.field.earth.projection import GLOBE, NAMES
 from flowtex.field.field import FlowField
 from flowtex.field.options import FieldOptions
 from flowtex.sources.datasets.axes import axis_values

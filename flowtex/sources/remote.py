@@ -13,11 +13,12 @@ from typing import Any
 import numpy as np
 
 from flowtex._util.array_types import AnyArray, Floats
-from flowtex._util.child import FORKS, Child, ChildError, fork_server
+from flowtex._util.child.child import FORKS, Child, ChildError
+from flowtex._util.child.fork_server import fork_server
 from flowtex._util.child.worker import Answer
 from flowtex.errors import FieldError, Notice, notify
 from flowtex.field.dates import date_of, written_date
-from flowtex.field.earth import Projection
+from flowtex.field.earth.projection import Projection
 from flowtex.field.field import FlowField
 from flowtex.field.steps import LazySteps, Steps
 from flowtex.sources.meshes.separate import end_of_reader, time_limit

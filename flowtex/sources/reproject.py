@@ -12,7 +12,7 @@ import scipy
 from flowtex._util.array_types import Bools, Floats, Indices
 from flowtex.errors import FieldError
 from flowtex.field import FlowField
-from flowtex.field.earth import Projection
+from flowtex.field.earth.projection import Projection
 from flowtex.field.locate import EARTH as GLOBE
 from flowtex.field.locate import POLE_LATITUDE, turned
 from flowtex.field.steps import Steps, map_steps

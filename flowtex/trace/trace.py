@@ -21,8 +21,8 @@ from flowtex._util.array_types import Bools, Floats, Floats32, Indices
 from flowtex._util.progress import pool, track
 from flowtex.errors import FieldError, notify
 from flowtex.field import FlowField
-from flowtex.field.derived import FOLLOWED
 from flowtex.field.derived.gradient import node_gradient, true_positions
+from flowtex.field.derived.quantities import FOLLOWED
 from flowtex.field.interpolation import nearest_known
 from flowtex.field.steps import LazySteps, Steps
 from flowtex.field.validation import known_nodes

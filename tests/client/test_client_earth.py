@@ -14,7 +14,7 @@ from webgl_page import ClientPage, packed, state
 
 import flowtex
 from flowtex import FlowField
-from flowtex.field.earth import Projection
+from flowtex.field.earth.projection import Projection
 from flowtex.host.view import web_views
 from flowtex.rendering.camera import Camera
 from flowtex.rendering.map_overlay import missing_colour

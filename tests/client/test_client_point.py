@@ -12,7 +12,7 @@ from matrix import ASIDE, IMAGE, MIDDLE, SIZE, WHOLE
 from webgl_page import ClientPage, packed, state
 
 from flowtex import FlowField, formula
-from flowtex.field.earth import Projection
+from flowtex.field.earth.projection import Projection
 from flowtex.host.view import web_views
 from flowtex.rendering.camera import Camera
 from flowtex.rendering.webgl.client_data import ClientData, Colours

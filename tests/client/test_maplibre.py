@@ -20,7 +20,7 @@ from range_server import RangeServer, range_server
 from scipy.ndimage import binary_erosion, map_coordinates
 
 import flowtex
-from flowtex.field.earth import EARTH_RADIUS
+from flowtex.field.earth.projection import EARTH_RADIUS
 from flowtex.host.export import MAPLIBRE_DIGESTS
 from flowtex.host.view import asset
 from flowtex.pyramid import build

@@ -9,7 +9,7 @@ from earth_data import AXIS, DEGREES, RATE, components, on_sphere, winds
 
 from flowtex import FlowField
 from flowtex._util.array_types import Floats
-from flowtex.field.earth import EARTH_RADIUS
+from flowtex.field.earth.projection import EARTH_RADIUS
 
 pytestmark = pytest.mark.filterwarnings("ignore::flowtex.errors.Notice")
 

@@ -12,8 +12,8 @@ import flowtex
 from flowtex import FlowField
 from flowtex._util.array_types import Floats
 from flowtex.errors import Notice
-from flowtex.field.derived import DERIVED
-from flowtex.field.earth import EARTH_RADIUS, Projection
+from flowtex.field.derived.quantities import DERIVED
+from flowtex.field.earth.projection import EARTH_RADIUS, Projection
 from flowtex.field.steps import LazySteps
 
 Made = tuple[FlowField, dict[str, Floats]]

@@ -14,7 +14,7 @@ from scipy.interpolate import RegularGridInterpolator
 from scipy.spatial import Delaunay
 
 from flowtex import FieldError, FlowField
-from flowtex.field.earth import Projection
+from flowtex.field.earth.projection import Projection
 from flowtex.field.quantities import values_at
 from flowtex.scene.scene import Scene
 

@@ -20,7 +20,7 @@ from PIL import Image
 
 import flowtex
 from flowtex import examples
-from flowtex.examples import gyre_nodes as nodes_of
+from flowtex.examples.analytic import gyre_nodes as nodes_of
 from flowtex.host.export import export
 from flowtex.host.still import preview_png
 from flowtex.host.view import web_views

@@ -21,7 +21,7 @@ from waiting import PATIENCE_S, wait_until
 import flowtex
 from flowtex import FieldError, examples
 from flowtex._util.colours import colour_table
-from flowtex.examples import gyre_nodes as nodes_of
+from flowtex.examples.analytic import gyre_nodes as nodes_of
 from flowtex.host import feed, still
 from flowtex.host.view import MOST_THREADS, in_pool
 from flowtex.rendering.camera import Camera

@@ -19,7 +19,7 @@ from mutations import legacy, xml
 from strategies import property_test
 
 from flowtex import FlowField
-from flowtex._util.child import Child
+from flowtex._util.child.child import Child
 from flowtex.errors import FieldError
 from flowtex.sources.inspection.inspect_file import inspect_file
 from flowtex.sources.remote import open_remote

@@ -16,7 +16,7 @@ from small_tiles import shrink
 import flowtex
 from flowtex._util.array_types import Floats
 from flowtex._util.colours import rgb
-from flowtex.field.earth import EARTH_RADIUS, Projection
+from flowtex.field.earth.projection import EARTH_RADIUS, Projection
 from flowtex.plotting import component  # noqa: F401  which PyVista finds by its entry point
 from flowtex.rendering.camera import Camera, read_camera
 from flowtex.rendering.map_overlay import globe_radius, ground_cells

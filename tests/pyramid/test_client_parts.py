@@ -15,7 +15,7 @@ from packed import parts_of
 
 from flowtex import FlowField
 from flowtex._util.array_types import AnyArray
-from flowtex.field.derived import steps_of
+from flowtex.field.derived.quantities import steps_of
 from flowtex.host.view import web_views
 from flowtex.pyramid import build
 from flowtex.pyramid.layout import FILE_CHUNK

@@ -12,7 +12,7 @@ from earth_fields import ocean, winds
 from flows import gyre, torus
 
 from flowtex import FlowField
-from flowtex.field.earth import Projection
+from flowtex.field.earth.projection import Projection
 from flowtex.rendering.camera import CAMERA_LIMITS, Camera, can_share_camera
 
 ASPECT = 1.6

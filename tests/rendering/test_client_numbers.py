@@ -23,8 +23,9 @@ import flowtex
 from flowtex import FlowField
 from flowtex._util.colours import colour_table
 from flowtex.field.dates import date_text
-from flowtex.field.earth import MapLines, Projection
-from flowtex.field.formula import gradient_trees
+from flowtex.field.earth.map_lines import MapLines
+from flowtex.field.earth.projection import Projection
+from flowtex.field.formula.formula import gradient_trees
 from flowtex.field.formula.grammar import FUNCTIONS, OPERATIONS, evaluate, parse
 from flowtex.rendering.arrow_seeds import ArrowSeeds, seed_limits
 from flowtex.rendering.camera import CAMERA_LIMITS, Camera

@@ -11,7 +11,7 @@ import pytest
 
 from flowtex import FlowField
 from flowtex._util.array_types import AnyArray, Floats
-from flowtex.field.earth import Projection
+from flowtex.field.earth.projection import Projection
 from flowtex.host.view import WebView, web_views
 from flowtex.rendering.map_overlay import map_lines
 from flowtex.rendering.webgl.client_data import ClientData

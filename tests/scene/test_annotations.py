@@ -18,8 +18,8 @@ from flowtex import FlowField
 from flowtex._util.colours import colour_table, rgb
 from flowtex.errors import Notice
 from flowtex.field.dates import time_text
-from flowtex.field.earth import Projection
 from flowtex.field.earth.on_land import on_land
+from flowtex.field.earth.projection import Projection
 from flowtex.plotting.offscreen.movie import frames
 from flowtex.rendering.camera import Camera
 from flowtex.rendering.cpu.shade import mean_colours

@@ -25,7 +25,7 @@ from strategies import property_test
 import flowtex
 from flowtex import FlowField
 from flowtex._util.array_types import Floats
-from flowtex.field.earth import EARTH_RADIUS
+from flowtex.field.earth.projection import EARTH_RADIUS
 from flowtex.field.quantities import PointValues, values_at
 from flowtex.scene.probe import locate, probe
 from flowtex.scene.scene import Scene

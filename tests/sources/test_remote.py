@@ -21,7 +21,7 @@ from lying_files import write_crashing
 from waiting import wait_until
 
 from flowtex import FlowField, examples
-from flowtex._util.child import Child
+from flowtex._util.child.child import Child
 from flowtex._util.progress import Stopped, stoppable
 from flowtex.errors import FieldError, Notice
 from flowtex.field.steps import LazySteps

@@ -18,7 +18,7 @@ from scipy.optimize import fsolve
 import flowtex
 from flowtex import FlowField
 from flowtex.errors import Notice
-from flowtex.field.formula import derivative
+from flowtex.field.formula.derivatives import derivative
 from flowtex.field.formula.grammar import OPERATIONS, evaluate, parse
 
 CASES = json.loads((Path(__file__).parent / "formula_cases.json").read_text(encoding="utf-8"))

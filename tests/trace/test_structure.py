@@ -7,7 +7,7 @@ from scipy.spatial import ConvexHull, Delaunay
 import flowtex
 from flowtex import FlowField
 from flowtex._util.array_types import Floats
-from flowtex.field.earth import EARTH_RADIUS, Projection
+from flowtex.field.earth.projection import EARTH_RADIUS, Projection
 
 #: Gradients of linear flows by their kinds.
 LINEAR = {

@@ -18,7 +18,7 @@ import pytest
 from child_handler import is_gone
 from waiting import PATIENCE_S, wait_until
 
-from flowtex._util.child import FORKS, Child, ChildError
+from flowtex._util.child.child import FORKS, Child, ChildError
 from flowtex._util.child.worker import read_message, write_message
 from flowtex._util.progress import Stopped, stoppable
 
@@ -147,7 +147,7 @@ def test_a_child_ends_with_its_object(start: Callable[..., Child]) -> None:
 PARENT = """
 import sys, time
 sys.path[:0] = sys.argv[1:3]
-from flowtex._util.child import Child
+from flowtex._util.child.child import Child
 child = Child("child_handler:Handler", forks=sys.argv[3] == "True")
 print(child.request({"do": "sum", "one": 1, "other": 1}, timeout=100)[0]["pid"], flush=True)
 print(child.request({"do": "store"}, timeout=100)[0], flush=True)

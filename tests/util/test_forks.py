@@ -15,7 +15,7 @@ from forked import forked, needs_forks
 from waiting import PATIENCE_S
 
 from flowtex._util.cache import ByteCache, WeakCache
-from flowtex._util.child import FORKS, INHERITED, Child, ChildError
+from flowtex._util.child.child import FORKS, INHERITED, Child, ChildError
 from flowtex._util.forks import ProcessLock, ProcessSemaphore
 from flowtex._util.progress import pool
 

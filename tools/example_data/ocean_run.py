@@ -11,7 +11,8 @@ from packing import LATITUDE, LONGITUDE, save_dataset
 from flowtex._util.array_types import Bools, Floats
 from flowtex.examples._shipped import DATA, TURNING
 from flowtex.examples._shipped import OCEAN as FILE
-from flowtex.field.earth import DEGREE, EARTH_RADIUS, Projection, coastlines
+from flowtex.field.earth.map_lines import coastlines
+from flowtex.field.earth.projection import DEGREE, EARTH_RADIUS, Projection
 
 #: Seconds of a day.
 DAY = 86400.0

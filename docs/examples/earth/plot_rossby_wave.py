@@ -10,7 +10,7 @@ turns longitude and latitude into positions on the globe, and winds into vectors
 import numpy as np
 
 import flowtex
-from flowtex.field.earth import EARTH_RADIUS, Projection
+from flowtex.field.earth.projection import EARTH_RADIUS, Projection
 
 lon, lat = np.meshgrid(np.linspace(-180, 180, 121), np.linspace(-90, 90, 61))
 a, b = np.radians(lon), np.radians(lat)

@@ -21,7 +21,7 @@ from vtkmodules.vtkCommonCore import vtkUnsignedCharArray
 from flowtex._util.array_types import Bytes, Floats
 from flowtex._util.cache import WeakCache
 from flowtex.field import FlowField
-from flowtex.field.derived import steps_of
+from flowtex.field.derived.quantities import steps_of
 from flowtex.field.interpolation import steps_around
 from flowtex.field.steps import LazySteps
 from flowtex.plotting.handle import FlowHandle

@@ -16,7 +16,7 @@ import numpy as np
 import scipy
 
 from flowtex._util.array_types import Bools, Floats, Indices
-from flowtex.field.earth import GLOBE, Projection
+from flowtex.field.earth.projection import GLOBE, Projection
 from flowtex.field.grids.grid_surface import GridSurface
 from flowtex.field.grids.poles import SAME_POINT_SHARE
 from flowtex.field.triangles.triangle_surface import Surface, TriangleSurface

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from flowtex._util.array_types import Bools, Floats
-from flowtex.field.earth import coast_points
+from flowtex.field.earth.map_lines import coast_points
 
 COLUMN_DEGREES = 0.01  #: Width of the strips of places that share a meridian; coasts are as exact.
 TURN = 360.0

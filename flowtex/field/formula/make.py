@@ -18,7 +18,7 @@ from flowtex._util.array_types import Bools, Floats
 from flowtex._util.written import UnreadableError, numbers
 from flowtex.errors import FieldError, notify
 from flowtex.field.field import FlowField
-from flowtex.field.formula import Formula
+from flowtex.field.formula.formula import Formula
 
 NODES = 257  #: Nodes along the longer side of a plane.
 SURFACE_NODES = 129  #: The same for a surface, whose poles slow down tracing.

@@ -19,8 +19,9 @@ from numpy.typing import ArrayLike
 from flowtex._util.array_types import AnyArray, Floats
 from flowtex.errors import FieldError
 from flowtex.field import FlowField
-from flowtex.field.derived import DERIVED, derived_unit
-from flowtex.field.earth import DEGREE, EARTH_RADIUS, MOST_LINES, STEPS, Projection
+from flowtex.field.derived.quantities import DERIVED, derived_unit
+from flowtex.field.earth.map_lines import MOST_LINES, STEPS
+from flowtex.field.earth.projection import DEGREE, EARTH_RADIUS, Projection
 from flowtex.field.steps import LazySteps
 from flowtex.scene.options import SPEED
 

@@ -24,7 +24,7 @@ from flowtex._util.colours import colour_map, norm_scale
 from flowtex.errors import FieldError
 from flowtex.field import FlowField, Surface
 from flowtex.field.dates import time_text
-from flowtex.field.earth import Projection
+from flowtex.field.earth.projection import Projection
 from flowtex.field.finer import finest_of
 from flowtex.field.options import FieldOptions, accepts_options
 from flowtex.plotting.offscreen.axes_kinds import (

@@ -20,7 +20,7 @@ import numpy as np
 from flowtex._util.array_types import Bytes, Floats, Floats32
 from flowtex._util.colours import CMAPS, ENTRIES, ColourScale, colour_table, is_diverging
 from flowtex.field import FlowField
-from flowtex.field.formula import Formula
+from flowtex.field.formula.formula import Formula
 from flowtex.field.interpolation import steps_around
 from flowtex.rendering.camera import CAMERA_LIMITS, Camera, CameraValues
 from flowtex.rendering.shaders import shader_text

@@ -12,7 +12,8 @@ from flowtex._util.cache import WeakCache
 from flowtex._util.colours import rgb
 from flowtex.field import FlowField
 from flowtex.field.dates import date_text
-from flowtex.field.earth import EARTH_RADIUS, MapLines, Projection
+from flowtex.field.earth.map_lines import MapLines
+from flowtex.field.earth.projection import EARTH_RADIUS, Projection
 from flowtex.rendering.map_overlay import (
     MISSING_SHARE,
     SPACING_PX,

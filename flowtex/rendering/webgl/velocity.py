@@ -16,7 +16,7 @@ import numpy as np
 from flowtex._util.array_types import AnyArray, Bools, Floats, Halves
 from flowtex._util.arrays import norm
 from flowtex._util.cache import ByteCache, WeakCache
-from flowtex.field.formula import Formula, gradient_trees
+from flowtex.field.formula.formula import Formula, gradient_trees
 from flowtex.field.interpolation import fill_blanked, nearest_known
 from flowtex.field.uncertainty import unknown_share
 from flowtex.rendering.tile_choice import CELL_PIXELS

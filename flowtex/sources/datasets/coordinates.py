@@ -12,7 +12,7 @@ import numpy as np
 from flowtex._util.array_types import Floats
 from flowtex.errors import FieldError, import_extra
 from flowtex.field import units
-from flowtex.field.earth import GLOBE, Projection
+from flowtex.field.earth.projection import GLOBE, Projection
 from flowtex.sources.datasets import labels
 from flowtex.sources.datasets.axes import TIME, Drawn, axis_kind, coordinate_of, horizontal_dims
 from flowtex.sources.datasets.curved import ANGLES, AZIMUTHS, RADII

@@ -21,8 +21,8 @@ from flowtex._util.array_types import Floats
 from flowtex.errors import FieldError
 from flowtex.field import units
 from flowtex.field.dates import as_seconds
-from flowtex.field.derived import magnitude_label
-from flowtex.field.earth import GLOBE
+from flowtex.field.derived.quantities import magnitude_label
+from flowtex.field.earth.projection import GLOBE
 from flowtex.field.field_arrays import GridArrays, TriangleArrays
 from flowtex.field.options import OF_MESHES, FieldOptions
 from flowtex.field.steps import LazySteps, examined_steps

@@ -15,7 +15,7 @@ import numpy as np
 
 from flowtex._util.array_types import Floats, Indices
 from flowtex.errors import FieldError
-from flowtex.field.earth import GLOBE, Projection
+from flowtex.field.earth.projection import GLOBE, Projection
 from flowtex.sources.datasets import labels
 from flowtex.sources.datasets.align import renamed
 from flowtex.sources.datasets.axes import as_slice, horizontal_dims

@@ -17,7 +17,7 @@ import numpy as np
 from flowtex._util.array_types import Floats
 from flowtex.errors import FieldError
 from flowtex.field import units
-from flowtex.field.earth import DEGREE
+from flowtex.field.earth.projection import DEGREE
 from flowtex.field.field_arrays import GridArrays, SectionAxes
 from flowtex.field.options import FieldOptions
 from flowtex.field.steps import LazySteps

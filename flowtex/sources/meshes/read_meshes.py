@@ -18,7 +18,7 @@ from numpy.typing import ArrayLike
 
 from flowtex._util.array_types import Floats
 from flowtex.errors import FieldError
-from flowtex.field.derived import component_name
+from flowtex.field.derived.quantities import component_name
 from flowtex.field.field_arrays import NOTABLE_SHARE, GridArrays, TriangleArrays
 from flowtex.field.folds import MOST_NODES
 from flowtex.field.grids.grid_surface import GridSurface

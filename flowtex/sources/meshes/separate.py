@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 import numpy as np
 
 from flowtex._util.array_types import AnyArray
-from flowtex._util.child import Child, ChildError
+from flowtex._util.child.child import Child, ChildError
 from flowtex._util.child.worker import Answer
 from flowtex.errors import FieldError, notify
 from flowtex.sources.inspection.vtk_legacy import check_vtk_legacy

@@ -14,7 +14,7 @@ import numpy as np
 from flowtex._util.array_types import Floats
 from flowtex.errors import FieldError, import_extra
 from flowtex.field.dates import span_since
-from flowtex.field.earth import EARTH_RADIUS
+from flowtex.field.earth.projection import EARTH_RADIUS
 from flowtex.sources.datasets.axes import TIME, Choice
 from flowtex.sources.datasets.coordinates import LONGITUDE
 from flowtex.sources.datasets.select import find_pairs

@@ -12,7 +12,7 @@ import numpy as np
 from flowtex._util.array_types import AnyArray, Bools, Floats, Indices
 from flowtex.errors import FieldError
 from flowtex.field import units
-from flowtex.field.earth import EARTH_RADIUS, GLOBE, Projection
+from flowtex.field.earth.projection import EARTH_RADIUS, GLOBE, Projection
 from flowtex.field.triangles.triangle_nodes import nodal_means, triangle_normals
 from flowtex.sources.datasets.axes import FACES, NODES
 from flowtex.sources.models.scattered import edge_length, join_points

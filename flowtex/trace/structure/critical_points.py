@@ -16,7 +16,7 @@ from flowtex._util.progress import track
 from flowtex.errors import FieldError, notify
 from flowtex.field import FlowField
 from flowtex.field.derived.gradient import node_gradient
-from flowtex.field.formula import Rates
+from flowtex.field.formula.rates import Rates
 from flowtex.field.grids.poles import Pole
 from flowtex.field.interpolation import between_nodes
 from flowtex.field.locate import surface_point

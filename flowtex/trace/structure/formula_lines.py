@@ -17,7 +17,7 @@ from numpy.lib.stride_tricks import sliding_window_view
 
 from flowtex._util.array_types import Bools, Floats, Indices
 from flowtex.field import FlowField
-from flowtex.field.formula import Rates
+from flowtex.field.formula.rates import Rates
 from flowtex.trace.integrate import Paths
 from flowtex.trace.trace import paths
 

@@ -18,7 +18,7 @@ import scipy
 from flowtex._util.arguments import check_field
 from flowtex._util.array_types import Bools, Floats, Indices
 from flowtex.field import FlowField
-from flowtex.field.formula import Rates
+from flowtex.field.formula.rates import Rates
 from flowtex.field.locate import locator, surface_point
 from flowtex.trace.structure.critical_points import (
     CriticalPoints,

@@ -16,7 +16,7 @@ from hosted_sessions import Place, place_of
 from served import Link
 from waiting import until
 
-from flowtex._util.child import FORKS
+from flowtex._util.child.child import FORKS
 from flowtex.app.server.security import new_secret
 from flowtex.app.server.sessions.process import process_opener
 from flowtex.errors import FieldError

@@ -19,7 +19,7 @@ from small_pages import small_page
 from flowtex import FlowField
 from flowtex.app import FlowApp
 from flowtex.app.streaming.points import path_of
-from flowtex.field.earth import Projection
+from flowtex.field.earth.projection import Projection
 from flowtex.scene.probe import locate, probe
 from flowtex.scene.scene import Scene
 from flowtex.settings import Settings

@@ -6,15 +6,8 @@ import numpy as np
 import pytest
 
 from flowtex._util.array_types import Floats
-from flowtex.field.earth import (
-    COASTS,
-    EARTH_RADIUS,
-    STEPS_PER_DEGREE,
-    MapLines,
-    Projection,
-    coastlines,
-    graticule,
-)
+from flowtex.field.earth.map_lines import COASTS, STEPS_PER_DEGREE, MapLines, coastlines, graticule
+from flowtex.field.earth.projection import EARTH_RADIUS, Projection
 
 NAMES = ("platecarree", "mercator", "north", "south", "lambert", "robinson", "equalearth")
 CENTERS = ((0.0, 0.0), (150.0, 40.0), (-100.0, -35.0))

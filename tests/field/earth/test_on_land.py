@@ -7,8 +7,8 @@ import pytest
 import scipy
 
 from flowtex import FlowField
-from flowtex.field.earth import Projection
 from flowtex.field.earth.on_land import on_land
+from flowtex.field.earth.projection import Projection
 from flowtex.rendering.map_overlay import ground_cells, missing_colour
 
 LAND = [(10, 50), (-100, 40), (135, -25), (180, 67), (-179.5, 66.5), (20, 0), (0, -90), (170, -85)]

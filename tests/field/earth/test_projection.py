@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from strategies import property_test
 
 from flowtex._util.array_types import Floats
-from flowtex.field.earth import EARTH_RADIUS, Projection
+from flowtex.field.earth.projection import EARTH_RADIUS, Projection
 
 CENTER = (10.0, 50.0)
 #: Latitudes that each projection shows without going to infinity.

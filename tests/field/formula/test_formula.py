@@ -16,7 +16,8 @@ from strategies import property_test
 
 import flowtex
 from flowtex import FieldError
-from flowtex.field.formula import MOST_SIZE, derivative
+from flowtex.field.formula.derivatives import derivative
+from flowtex.field.formula.formula import MOST_SIZE
 from flowtex.field.formula.grammar import FUNCTIONS, OPERATIONS, evaluate, parse, size
 from flowtex.field.formula.make import KNOWN, is_line, line_field, with_parameter
 from flowtex.rendering.webgl.velocity import client_formula

@@ -22,7 +22,7 @@ from matplotlib.figure import Figure
 import flowtex
 from flowtex import FieldError, FlowField
 from flowtex._util.array_types import Bytes, Floats
-from flowtex.field.earth import Projection
+from flowtex.field.earth.projection import Projection
 from flowtex.plotting.offscreen.figure import FlowImage
 from flowtex.rendering.map_overlay import missing_colour
 

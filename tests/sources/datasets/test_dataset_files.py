@@ -16,7 +16,7 @@ from lying_files import grib
 
 from flowtex import FlowField
 from flowtex.errors import FieldError, Notice
-from flowtex.field.earth import EARTH_RADIUS
+from flowtex.field.earth.projection import EARTH_RADIUS
 from flowtex.sources.opening import dataset_files as files
 
 pytestmark = [

@@ -11,7 +11,7 @@ from earth_data import RATE, c_grid, components, on_sphere, turning, winds
 
 from flowtex import FlowField
 from flowtex.errors import FieldError
-from flowtex.field.earth import EARTH_RADIUS
+from flowtex.field.earth.projection import EARTH_RADIUS
 from flowtex.sources.notices import DatasetNotice
 
 LON, LAT = np.arange(-180.0, 180.0, 5.0), np.arange(-90.0, 90.1, 5.0)

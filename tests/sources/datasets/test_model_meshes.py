@@ -17,7 +17,7 @@ from scipy.spatial import ConvexHull, cKDTree
 from flowtex import FlowField
 from flowtex._util.array_types import Floats
 from flowtex.errors import FieldError
-from flowtex.field.earth import EARTH_RADIUS
+from flowtex.field.earth.projection import EARTH_RADIUS
 from flowtex.field.options import FieldOptions
 from flowtex.field.steps import LazySteps
 from flowtex.field.triangles.triangle_surface import TriangleSurface

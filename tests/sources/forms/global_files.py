@@ -11,7 +11,7 @@ from known_flow import EAST, NORTH, Truth, wind
 from scipy.spatial import ConvexHull
 from supported import Made, supported
 
-from flowtex.field.earth import GLOBE, Projection
+from flowtex.field.earth.projection import GLOBE, Projection
 from flowtex.sources.models.healpix import healpix_centres
 
 KIND = "Grids of the globe"

@@ -14,7 +14,7 @@ from scipy.spatial import cKDTree
 from flowtex import FlowField
 from flowtex._util.array_types import Floats
 from flowtex.errors import FieldError
-from flowtex.field.earth import EARTH_RADIUS
+from flowtex.field.earth.projection import EARTH_RADIUS
 from flowtex.sources.notices import DatasetNotice
 from flowtex.sources.open_source import open_source
 

@@ -12,7 +12,7 @@ from earth_data import components
 from flowtex import FlowField
 from flowtex._util.array_types import Floats
 from flowtex.errors import FieldError
-from flowtex.field.earth import GLOBE, Projection
+from flowtex.field.earth.projection import GLOBE, Projection
 from flowtex.sources.models.healpix import healpix_centres
 
 pytestmark = pytest.mark.filterwarnings("ignore::flowtex.sources.notices.DatasetNotice")

@@ -14,7 +14,7 @@ from scipy.spatial import Delaunay
 from flowtex import FlowField
 from flowtex._util.array_types import Floats, Indices
 from flowtex.errors import FieldError
-from flowtex.field.earth import EARTH_RADIUS, GLOBE, Projection
+from flowtex.field.earth.projection import EARTH_RADIUS, GLOBE, Projection
 from flowtex.field.options import FieldOptions
 from flowtex.field.units import factor
 from flowtex.scene.fields import read_field

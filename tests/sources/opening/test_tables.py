@@ -15,7 +15,7 @@ from scipy.spatial import cKDTree
 
 from flowtex import FlowField
 from flowtex.errors import FieldError
-from flowtex.field.earth import EARTH_RADIUS
+from flowtex.field.earth.projection import EARTH_RADIUS
 from flowtex.sources.opening.tables import of_table
 
 pytestmark = pytest.mark.filterwarnings("ignore::flowtex.sources.notices.DatasetNotice")

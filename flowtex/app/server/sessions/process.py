@@ -21,7 +21,7 @@ import aiohttp
 from aiohttp import WSCloseCode, WSMsgType, web
 from yarl import URL
 
-from flowtex._util.child import ENDED, Child, ChildError
+from flowtex._util.child.child import ENDED, Child, ChildError
 from flowtex._util.progress import Stopped, check, stoppable
 from flowtex._util.whole_file import TemporaryFolder
 from flowtex.app.server.files import CHUNK_BYTES

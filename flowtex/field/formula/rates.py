@@ -1,0 +1,86 @@
+"""The rates of a formula at one time, with their exact gradient."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from flowtex._util.array_types import Floats
+from flowtex.field.formula.formula import COMPONENTS, Formula, gradient_trees, rate_trees
+from flowtex.field.formula.grammar import Tree, evaluate
+
+FUNCTION_SHARE = 1e-4  #: Step of finite differences for functions, as a share of a range.
+#: Steps and weights of these finite differences.
+WEIGHTS = ((-2, 1 / 12), (-1, -2 / 3), (1, 2 / 3), (2, -1 / 12))
+
+
+class Rates:
+    """The rates of both coordinates; places are (N, 2).
+
+    Functions have no trees, so their gradient is that of differences of fourth order. A velocity in
+    space gives the rates times the metric of the surface, which vanish at the same places.
+    """
+
+    def __init__(self, formula: Formula, time: float) -> None:
+        self._formula = formula
+        self._time = time
+        self.ends = np.array(list(formula.ranges.values()))
+        self._values = {name: each.value for name, each in formula.parameters.items()} | {"t": time}
+        self.trees, self._tangents = rate_trees(formula)
+        self._gradient = gradient_trees(formula)
+
+    @property
+    def is_known(self) -> bool:
+        """Whether the rates can be computed, which functions on a surface do not allow."""
+        return bool(self.trees) or not self._formula.surface
+
+    def at(self, places: Floats) -> Floats:
+        """Return the rates, (N, 2)."""
+        if not self.trees:
+            x, y = places.T
+            return self._formula.velocity(x, y, self._time)
+        return self._of(self.trees, places)
+
+    def gradient(self, places: Floats) -> Floats:
+        """Return the change of rate k along coordinate m, (N, 2, 2)."""
+        if self.trees:
+            return self._of(self._gradient, places).reshape(-1, 2, 2)
+        steps = FUNCTION_SHARE * np.diag(np.ptp(self.ends, axis=1))
+        sides = []
+        for h in steps:
+            sides.append(sum(w * self.at(places + n * h) for n, w in WEIGHTS) / h.sum())
+        return np.stack(sides, axis=-1)
+
+    def positions(self, places: Floats) -> Floats:
+        """Return the positions, (N, 3)."""
+        points = self._formula.points(places[:, 0], places[:, 1])
+        return np.pad(points, ((0, 0), (0, 3 - points.shape[-1])))
+
+    def tangents(self, places: Floats) -> Floats:
+        """Return the derivatives of the position along the coordinates, (N, 2, 3)."""
+        if not self._tangents:
+            return np.broadcast_to(np.eye(2, 3), (len(places), 2, 3))
+        return self._of([each for row in self._tangents for each in row], places).reshape(-1, 2, 3)
+
+    def area(self, places: Floats) -> Floats:
+        """Return the area of a unit of both coordinates, (N,)."""
+        one, other = np.moveaxis(self.tangents(places), 1, 0)
+        return np.asarray(np.linalg.norm(np.cross(one, other), axis=1))
+
+    def lowered(self, values: Floats, places: Floats) -> Floats:
+        """Return rates or gradients (N, 2, ...) divided by the metric, if they contain it."""
+        if len(self._formula.expressions) != COMPONENTS:
+            return values
+        tangents = self.tangents(places)
+        metric = np.einsum("nkc,nmc->nkm", tangents, tangents)
+        return np.asarray(np.einsum("nkm,nm...->nk...", np.linalg.pinv(metric), values))
+
+    def _of(self, trees: Sequence[Tree], places: Floats) -> Floats:
+        """Return the values of trees, (N, number of trees)."""
+        values = self._values | dict(zip(self._formula.ranges, places.T, strict=True))
+        result = np.empty((len(places), len(trees)))
+        with np.errstate(all="ignore"):
+            for k, tree in enumerate(trees):
+                result[:, k] = evaluate(tree, values)
+        return result
