@@ -29,7 +29,8 @@ LOAD_SLOW = (
     "__main__",
     "xarray",
     "pyramid.objects",
-    "sources.inspection.zarr_stores",
+    "_util.zarr_codecs",
+    "_util.zarr_stores",
 )
 MAX_ENTRIES = 20
 

@@ -8,13 +8,56 @@ from collections.abc import Iterator
 from contextlib import suppress
 from pathlib import Path
 
+from flowtex.errors import FieldError
+
 UNKNOWN_BYTES = 4_000_000_000  #: Memory that is assumed if the system does not report it.
+#: Share of the memory for data: a reader and later computations take several times as much.
+MEMORY_SHARE = 0.5
+#: Bytes that always fit: to ask for the available memory takes longer than to read them.
+SMALL = 100_000
 
 
 def available_bytes(root: Path = Path("/")) -> int:
     """Return the least of the free memory and what control groups and ``RLIMIT_AS`` leave."""
     limits = [*_physical(root), *_groups(root), *_address_space(root)]
     return max(min(limits, default=UNKNOWN_BYTES), 0)
+
+
+def check_memory(nbytes: int, what: str) -> None:
+    """Check that data fit into memory.
+
+    Parameters
+    ----------
+    nbytes
+        Their size in bytes.
+    what
+        What declares the size, for the error.
+
+    Raises
+    ------
+    FieldError
+        When they need more than a share of the available memory.
+    """
+    if nbytes < SMALL:
+        return
+    budget = int(available_bytes() * MEMORY_SHARE)
+    if nbytes > budget:
+        raise FieldError(
+            f"{what} declares {size_text(nbytes)}, but {size_text(budget)} of memory are "
+            "available for data; write a part or a coarser version to a separate file"
+        )
+
+
+def size_text(nbytes: int) -> str:
+    """Return a number of bytes as text, such as ``"1.5 GB"``."""
+    size = float(min(nbytes, 10**30))
+    units = ["bytes", "kB", "MB", "GB", "TB", "PB"]
+    while size >= 1000 and len(units) > 1:
+        size = size / 1000
+        units = units[1:]
+    if size < 1000:
+        return f"{size:.3g} {units[0]}"
+    return f"{size:.0f} {units[0]}"
 
 
 def give_back() -> None:

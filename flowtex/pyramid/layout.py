@@ -32,6 +32,18 @@ import numpy as np
 from flowtex._util import __version__
 from flowtex._util.array_types import AnyArray, Floats, Floats32
 from flowtex._util.cache import digest
+from flowtex._util.json_checks import (
+    MOST_NAMES,
+    Check,
+    by_name,
+    either,
+    is_flag,
+    is_number,
+    is_text,
+    list_of,
+    or_none,
+    whole,
+)
 from flowtex.errors import import_extra
 from flowtex.field import FlowField
 from flowtex.field.dates import date_of, written_date
@@ -73,11 +85,8 @@ CONVENTION = {
 MOST_NODES = 10**7  #: Most nodes along an axis.
 MOST_STEPS = 10**6  #: Most time steps.
 MOST_LEVELS = 40  #: Most levels.
-MOST_LETTERS = 10_000  #: Most characters of a text.
-MOST_SCALARS = 1000  #: Most scalars.
 MOST_ROOT_NODES = 1_000_000  #: Nodes of the coarsest level, which is read whole, at most.
 
-Check = Callable[[Any], bool]
 #: The description of a field and its pyramid, as the store has it; ``_ABOUT`` lists its entries.
 #: Its seal, a hash, reveals accidental damage. A wrong one may have a valid seal, so types and
 #: sizes, which decide how much memory is taken, are checked as well.
@@ -297,53 +306,15 @@ def _seal(about: About) -> str:
     return digest(words=(text,)).hex()
 
 
-def _flag(value: object) -> bool:
-    return isinstance(value, bool)
-
-
-def _text(value: object) -> bool:
-    return isinstance(value, str) and len(value) <= MOST_LETTERS
-
-
-def _whole(least: int, most: int) -> Check:
-    return lambda value: type(value) is int and least <= value <= most
-
-
-def _number(value: Any) -> bool:
-    return type(value) in (int, float) and math.isfinite(value)
-
-
-def _either(*values: object) -> Check:
-    return lambda value: value in values and type(value) is not bool
-
-
-def _list(check: Check, least: int, most: int | None = None) -> Check:
-    if most is None:
-        most = least
-    return lambda v: isinstance(v, list) and least <= len(v) <= most and all(map(check, v))
-
-
-def _or_none(check: Check) -> Check:
-    return lambda value: value is None or check(value)
-
-
-def _by_name(check: Check) -> Check:
-    return lambda v: (
-        isinstance(v, dict)
-        and len(v) <= MOST_SCALARS
-        and all(_text(name) and check(value) for name, value in v.items())
-    )
-
-
 def _date(value: Any) -> bool:
-    parts = _list(_whole(0, 100_000), 7)
-    return isinstance(value, list) and len(value) == 2 and parts(value[0]) and _text(value[1])
+    parts = list_of(whole(0, 100_000), 7)
+    return isinstance(value, list) and len(value) == 2 and parts(value[0]) and is_text(value[1])
 
 
 def _projection(value: Any) -> bool:
     if not (isinstance(value, list) and len(value) == 3):
         return False
-    return _text(value[0]) and _list(_number, 2)(value[1]) and _number(value[2])
+    return is_text(value[0]) and list_of(is_number, 2)(value[1]) and is_number(value[2])
 
 
 def is_scalar_name(name: str) -> bool:
@@ -351,30 +322,30 @@ def is_scalar_name(name: str) -> bool:
     return bool(name) and "/" not in name and name not in (".", "..", "zarr.json")
 
 
-_ENDS = _list(_list(_number, 2), 2)
+_ENDS = list_of(list_of(is_number, 2), 2)
 #: Required entries of the description of a pyramid; more are allowed.
 _ABOUT: dict[str, Check] = {
-    **dict.fromkeys(("name", "length_unit", "time_unit", "version", "fingerprint"), _text),
-    **dict.fromkeys(("axes", "late", "has_position"), _flag),
-    "levels_done": _or_none(_flag),
-    "nodes": _list(_whole(2, MOST_NODES), 2),
-    "times": lambda v: _list(_number, 1, MOST_STEPS)(v) and all(a < b for a, b in pairwise(v)),
-    "start": _or_none(_date),
-    "projection": _or_none(_projection),
-    "periodic": _list(_flag, 2),
-    "periods": _list(_list(_number, 3), 2),
-    "depth": _whole(0, MOST_LEVELS),
-    "tile_cells": _whole(1, 4096),
-    "parameter": _either("arclength", "time"),
-    "lines": _either("pathlines", "streamlines"),
-    "components": _either(2, 3),
-    "height": _number,
-    "scalars": lambda v: _by_name(_whole(1, MOST_STEPS))(v) and all(map(is_scalar_name, v)),
-    **dict.fromkeys(("uncertainty", "velocity_unit", "vectors"), _or_none(_text)),
-    "units": _by_name(_text),
-    "long_names": _by_name(_text),
-    "on_cells": _or_none(_list(_text, 0, MOST_SCALARS)),
-    "ranges": _or_none(_by_name(_ENDS)),
+    **dict.fromkeys(("name", "length_unit", "time_unit", "version", "fingerprint"), is_text),
+    **dict.fromkeys(("axes", "late", "has_position"), is_flag),
+    "levels_done": or_none(is_flag),
+    "nodes": list_of(whole(2, MOST_NODES), 2),
+    "times": lambda v: list_of(is_number, 1, MOST_STEPS)(v) and all(a < b for a, b in pairwise(v)),
+    "start": or_none(_date),
+    "projection": or_none(_projection),
+    "periodic": list_of(is_flag, 2),
+    "periods": list_of(list_of(is_number, 3), 2),
+    "depth": whole(0, MOST_LEVELS),
+    "tile_cells": whole(1, 4096),
+    "parameter": either("arclength", "time"),
+    "lines": either("pathlines", "streamlines"),
+    "components": either(2, 3),
+    "height": is_number,
+    "scalars": lambda v: by_name(whole(1, MOST_STEPS))(v) and all(map(is_scalar_name, v)),
+    **dict.fromkeys(("uncertainty", "velocity_unit", "vectors"), or_none(is_text)),
+    "units": by_name(is_text),
+    "long_names": by_name(is_text),
+    "on_cells": or_none(list_of(is_text, 0, MOST_NAMES)),
+    "ranges": or_none(by_name(_ENDS)),
 }
 
 

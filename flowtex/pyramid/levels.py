@@ -93,7 +93,7 @@ class Levels:
 
     def _array(self, name: str) -> AsyncArray[ArrayV3Metadata]:
         """Return a Zarr array with the metadata that a build gives it, not those in the store."""
-        from flowtex.pyramid.objects import bounded
+        from flowtex._util.zarr_codecs import bounded
 
         top = name.partition("/")[0]
         with self._lock:

@@ -194,7 +194,7 @@ def store_at(place: str | Path, *, read_only: bool = True) -> Store:
     import_extra("zarr.storage", "store")
     from zarr import storage
 
-    from flowtex.sources.inspection.zarr_stores import CheckedStore
+    from flowtex._util.zarr_stores import CheckedStore
 
     if not is_remote(text):
         return CheckedStore(storage.LocalStore(text, read_only=read_only))

@@ -290,7 +290,7 @@ def has_parts(place: object) -> bool:
     if not (folder.is_dir() and is_dataset_file(folder)):
         return False
     zarr = import_extra("zarr", "xarray")
-    from flowtex.sources.inspection.zarr_stores import checked_folder
+    from flowtex._util.zarr_stores import checked_folder
 
     try:
         group = zarr.open_group(checked_folder(folder), mode="r")
@@ -322,8 +322,8 @@ def datasets_at(place: str, options: FieldOptions) -> list[Any]:
     """
     xarray = import_extra("xarray", "xarray")
     import_extra("zarr", "xarray")
+    from flowtex._util.zarr_stores import check_arrays
     from flowtex.pyramid.objects import Objects
-    from flowtex.sources.inspection.zarr_stores import check_arrays
 
     components = {name for name in two_names(options.vectors) if name}
     if not is_remote(place):

@@ -19,7 +19,7 @@ import numpy as np
 
 from flowtex._util.array_types import AnyArray
 from flowtex._util.forks import ProcessLock
-from flowtex._util.memory import available_bytes
+from flowtex._util.memory import check_memory
 from flowtex.errors import FieldError, notify
 
 if TYPE_CHECKING:
@@ -31,10 +31,6 @@ if TYPE_CHECKING:
 _VTK_GLOBALS = ProcessLock()
 #: Environment variable that decides whether HDF5 locks files.
 LOCKING = "HDF5_USE_FILE_LOCKING"
-#: Share of the memory for data: a reader and later computations take several times as much.
-MEMORY_SHARE = 0.5
-#: Bytes that always fit: to ask for the available memory takes longer than to read them.
-SMALL = 100_000
 
 
 @contextmanager
@@ -168,43 +164,6 @@ def check_count(found: int, declared: int, what: str, unit: str = "bytes") -> No
             f"the file is truncated or damaged: {what} declares {declared:,} {unit}, but the "
             f"file has {max(found, 0):,}; write or copy it again"
         )
-
-
-def check_memory(nbytes: int, what: str) -> None:
-    """Check that data fit into memory.
-
-    Parameters
-    ----------
-    nbytes
-        Their size in bytes.
-    what
-        What declares the size, for the error.
-
-    Raises
-    ------
-    FieldError
-        When they need more than a share of the available memory.
-    """
-    if nbytes < SMALL:
-        return
-    budget = int(available_bytes() * MEMORY_SHARE)
-    if nbytes > budget:
-        raise FieldError(
-            f"{what} declares {size_text(nbytes)}, but {size_text(budget)} of memory are "
-            "available for data; write a part or a coarser version to a separate file"
-        )
-
-
-def size_text(nbytes: int) -> str:
-    """Return a number of bytes as text, such as ``"1.5 GB"``."""
-    size = float(min(nbytes, 10**30))
-    units = ["bytes", "kB", "MB", "GB", "TB", "PB"]
-    while size >= 1000 and len(units) > 1:
-        size = size / 1000
-        units = units[1:]
-    if size < 1000:
-        return f"{size:.3g} {units[0]}"
-    return f"{size:.0f} {units[0]}"
 
 
 def values_in(array: Any) -> AnyArray:

@@ -13,8 +13,8 @@ import pytest
 import pyvista as pv
 
 from flowtex import FlowField
+from flowtex._util import memory
 from flowtex.errors import FieldError
-from flowtex.sources import reader_errors
 from flowtex.sources.inspection.inspect_file import inspect_file
 
 
@@ -176,9 +176,9 @@ def test_what_does_not_fit_into_memory_is_refused(
     grid["velocity"] = np.ones((grid.n_points, 3))
     path = tmp_path / "calm.vti"
     grid.save(path, compression=compressor)
-    monkeypatch.setattr(reader_errors, "available_bytes", lambda: 1_000_000)
+    monkeypatch.setattr(memory, "available_bytes", lambda: 1_000_000)
     FlowField.from_file(path)  # 240 kB, however small the file is
-    monkeypatch.setattr(reader_errors, "available_bytes", lambda: 400_000)
+    monkeypatch.setattr(memory, "available_bytes", lambda: 400_000)
     path.touch()
     assert "the file declares 240 kB, but 200 kB of memory are available" in refused(path)
 
@@ -187,7 +187,7 @@ def test_a_chunk_and_a_variable_have_to_fit_into_memory(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     lies.large_chunk(tmp_path / "chunk.nc")
-    monkeypatch.setattr(reader_errors, "available_bytes", lambda: 20_000_000)
+    monkeypatch.setattr(memory, "available_bytes", lambda: 20_000_000)
     assert "one chunk of u declares 32 MB, but 10 MB" in refused(tmp_path / "chunk.nc")
 
 

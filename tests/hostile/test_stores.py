@@ -249,7 +249,7 @@ def test_a_chunk_unpacks_to_what_its_array_declares(
     declared = zarr.open_array(copy / "0/digests", mode="r").chunks[-1]
     (copy / "0/digests/c/0/0/0/0").write_bytes(packed(size))
     counted = Counted()
-    monkeypatch.setattr("flowtex.pyramid.objects.zlib.decompressobj", counted)
+    monkeypatch.setattr("flowtex._util.zarr_codecs.zlib.decompressobj", counted)
     (fault,) = verify(copy, progress=False)
     assert f"does not unpack to the {declared:,} bytes that its array declares" in fault
     assert min(size, declared + 1) in counted.sizes

@@ -13,8 +13,8 @@ from typing import Any
 import numpy as np
 
 from flowtex._util.array_types import AnyArray
+from flowtex._util.memory import check_memory
 from flowtex.errors import FieldError
-from flowtex.sources.reader_errors import check_memory
 
 #: Folders of meshes in a case: of times and of regions, also of parts of a decomposed case.
 MESHES = ("*/polyMesh", "*/*/polyMesh", "*/*/*/polyMesh")

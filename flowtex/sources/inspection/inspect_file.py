@@ -12,6 +12,7 @@ from os.path import realpath
 from pathlib import Path
 from typing import Any, NoReturn
 
+from flowtex._util.memory import check_memory
 from flowtex.errors import FieldError, import_extra
 from flowtex.sources.inspection import vtk_files
 from flowtex.sources.inspection.foam_files import check_foam
@@ -20,7 +21,7 @@ from flowtex.sources.inspection.ply_files import check_ply
 from flowtex.sources.inspection.stl_files import check_stl
 from flowtex.sources.inspection.vtk_files import Data
 from flowtex.sources.inspection.vtk_legacy import check_vtk_legacy
-from flowtex.sources.reader_errors import check_count, check_memory
+from flowtex.sources.reader_errors import check_count
 
 #: Suffixes of NetCDF, and its first bytes in the classic forms.
 NETCDF = (".nc", ".nc4", ".nc3", ".cdf", ".netcdf")
@@ -158,7 +159,7 @@ def _inspect(path: Path, data: Data, *, whole: bool, is_piece: bool) -> tuple[Pa
 def check_zarr(folder: Path) -> None:
     """Raise a FieldError for a codec that is not listed, or an array that needs too much memory."""
     import_extra("zarr", "xarray")
-    from flowtex.sources.inspection.zarr_stores import check_arrays, checked_folder
+    from flowtex._util.zarr_stores import check_arrays, checked_folder
 
     check_arrays(checked_folder(folder))
 

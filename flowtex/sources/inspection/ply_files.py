@@ -8,9 +8,10 @@ from typing import NoReturn
 import numpy as np
 
 from flowtex._util.array_types import AnyArray
+from flowtex._util.memory import check_memory
 from flowtex.errors import FieldError
 from flowtex.sources.inspection.vtk_files import Data
-from flowtex.sources.reader_errors import check_count, check_memory
+from flowtex.sources.reader_errors import check_count
 
 #: Types of numbers by their names.
 KINDS = {

@@ -20,8 +20,9 @@ from xml.parsers import expat
 
 import numpy as np
 
+from flowtex._util.memory import check_memory
 from flowtex.errors import FieldError
-from flowtex.sources.reader_errors import check_count, check_memory
+from flowtex.sources.reader_errors import check_count
 
 #: A file that is mapped into memory; an empty one cannot be mapped.
 Data: TypeAlias = mmap | bytes

@@ -13,9 +13,10 @@ from typing import NoReturn
 import numpy as np
 
 from flowtex._util.array_types import Indices
+from flowtex._util.memory import check_memory
 from flowtex.errors import FieldError
 from flowtex.sources.inspection.vtk_files import WORD, Data, count_numbers
-from flowtex.sources.reader_errors import check_count, check_memory
+from flowtex.sources.reader_errors import check_count
 
 MAGIC = b"# vtk DataFile Version"
 #: Bytes of a value by the beginning of its type's name, as VTK recognises it.

@@ -18,10 +18,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from flowtex._util.array_types import AnyArray
+from flowtex._util.memory import check_memory
 from flowtex.errors import FieldError
 from flowtex.sources.meshes.parts import TimeStep, read_checked
 from flowtex.sources.meshes.vectors import candidates
-from flowtex.sources.reader_errors import check_count, check_memory
+from flowtex.sources.reader_errors import check_count
 
 if TYPE_CHECKING:
     import pyvista as pv

@@ -15,6 +15,7 @@ import numpy as np
 
 from flowtex._util.arguments import brief, checked_source
 from flowtex._util.array_types import AnyArray
+from flowtex._util.memory import check_memory
 from flowtex.errors import FieldError, import_extra, import_package
 from flowtex.field import units
 from flowtex.sources.datasets import labels
@@ -26,7 +27,6 @@ from flowtex.sources.models.drifters import as_points
 from flowtex.sources.notices import NOTE, Record
 from flowtex.sources.opening import component_axes, flow_text, rasters, tables
 from flowtex.sources.opening.column_values import plain_values
-from flowtex.sources.reader_errors import check_memory
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -496,7 +496,7 @@ def open_files(path: Path) -> Datasets:
         place: Any = path
         if path.is_dir() or suffix in ZARR:
             import_extra("zarr", "xarray")
-            from flowtex.sources.inspection.zarr_stores import checked_folder
+            from flowtex._util.zarr_stores import checked_folder
 
             place, options["engine"] = checked_folder(path), "zarr"
         try:

@@ -15,10 +15,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from flowtex._util.memory import check_memory
 from flowtex.errors import FieldError, import_extra
 from flowtex.sources.notices import NOTE
 from flowtex.sources.opening import tables
-from flowtex.sources.reader_errors import check_memory
 
 if TYPE_CHECKING:
     import xarray as xr

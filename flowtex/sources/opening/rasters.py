@@ -6,9 +6,9 @@ import re
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from flowtex._util.memory import check_memory
 from flowtex.errors import FieldError, import_package
 from flowtex.sources.notices import NOTE
-from flowtex.sources.reader_errors import check_memory
 
 if TYPE_CHECKING:
     import xarray as xr

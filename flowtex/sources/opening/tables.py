@@ -23,6 +23,7 @@ from typing import TYPE_CHECKING, Any, TextIO
 import numpy as np
 
 from flowtex._util.array_types import AnyArray
+from flowtex._util.memory import check_memory
 from flowtex._util.whole_file import TemporaryFolder
 from flowtex.errors import FieldError, import_extra
 from flowtex.sources.datasets import is_dataset
@@ -31,7 +32,7 @@ from flowtex.sources.models.trajectories import IDENTITIES, TRAJECTORY
 from flowtex.sources.opening import component_axes
 from flowtex.sources.opening.column_names import component_names, split_unit
 from flowtex.sources.opening.column_values import column_numbers, without_units
-from flowtex.sources.reader_errors import check_count, check_memory
+from flowtex.sources.reader_errors import check_count
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -20,8 +20,8 @@ from zarr.abc.store import ByteRequest, Store
 from zarr.core.buffer import Buffer, BufferPrototype
 from zarr.storage import LocalStore, WrapperStore
 
+from flowtex._util.memory import check_memory
 from flowtex.errors import FieldError
-from flowtex.sources.reader_errors import check_memory
 
 #: Documents from which Zarr takes metadata of arrays, of both formats.
 DOCUMENTS = ("zarr.json", ".zarray", ".zgroup", ".zmetadata")
