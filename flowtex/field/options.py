@@ -112,6 +112,11 @@ class FieldOptions:
         "(standard deviation ÷ speed), or an ensemble dimension to average over, such as "
         '``"number"``.',
     )
+    slices: Any | None = option(
+        None,
+        "Paths that were traced before: :class:`~flowtex.TraceSlices` of this flow, from "
+        ":func:`flowtex.trace` or ``TraceSlices.open``. By default flowtex traces them.",
+    )
 
     def __post_init__(self) -> None:
         """Join the names of components, and those of a speed and a direction, to ``vectors``."""
@@ -171,11 +176,11 @@ class FieldOptions:
 
     @property
     def given(self) -> dict[str, Any]:
-        """Values by name, without those that are ``None``."""
+        """Values by name of arguments that select data, without those that are ``None``."""
         return {
             name: value
             for name in self.__dataclass_fields__
-            if (value := getattr(self, name)) is not None
+            if name != "slices" and (value := getattr(self, name)) is not None
         }
 
     def refuse(self, names: Iterable[str], scope: str) -> None:

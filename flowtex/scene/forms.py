@@ -83,5 +83,5 @@ FORMS: dict[str, Form] = {
     name: SWITCH if name in (*SWITCHES, *EARTH_LINES) else _SPECIAL.get(name, PLAIN)
     for kind in (FieldOptions, Appearance, ViewOptions)
     for name in kind.__dataclass_fields__
-    if name != "times"
+    if name not in ("times", "slices")
 }

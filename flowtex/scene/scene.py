@@ -90,7 +90,7 @@ class Scene:
         self._ranges: dict[tuple[str, bool, bool], tuple[float, float]] = {}
         self._kept: dict[tuple[str, bool], tuple[float, float]] = {}
         self._pyramid: Pyramid | None = None
-        self._sliced = slices is not None
+        self._sliced = slices
         self._check_colours(self._appearance)
         self._noise = self.settings.noise
         self._store: SliceStore | None = None
@@ -144,7 +144,10 @@ class Scene:
             image = None
         else:
             image = self.image
-        scene = Scene(field, options.make_settings(), look, image=image)
+        slices = self._sliced
+        if field is not self._given or any(is_traced_by(name) for name in changes):
+            slices = None
+        scene = Scene(field, options.make_settings(), look, image=image, slices=slices)
         scene._kept = self._kept
         return scene
 
@@ -257,6 +260,8 @@ class Scene:
     @property
     def lines(self) -> str:
         """Lines along which the texture is drawn: ``"pathlines"`` or ``"streamlines"``."""
+        if self._sliced is not None:
+            return "pathlines"
         return chosen_lines(self.field, self.settings.lines)
 
     @property
@@ -265,7 +270,7 @@ class Scene:
 
         Noise in a texture, and a sign-free field, are not drawn in tiles.
         """
-        if self._sliced or not is_tiled(self.field, self.settings):
+        if self._sliced is not None or not is_tiled(self.field, self.settings):
             return None
         if self._pyramid is None:
             self._pyramid = shared_pyramid(self.field, self.settings.parameter, self.lines)
@@ -596,7 +601,7 @@ class Scene:
         affects = TABLE[name].affects
         if affects == "trace":
             self._store = self._pyramid = None
-            self._sliced = False
+            self._sliced = None
         elif name == "noise" and self._pyramid is not None and self._pyramid.depth:
             self._store = None  # in tiles or whole
         if affects != "uniform":
@@ -615,10 +620,16 @@ def make_scenes(mesh: Any, options: Options) -> list[Scene]:
     changes = options.view.beside
     if mixes_at_folds(field):
         notify(FOLDED)
-    first = Scene(field, options.make_settings(field), options.appearance)
+    settings = options.make_settings(field)
+    first = Scene(field, settings, options.appearance, slices=options.field.slices)
     if changes is None:
         return [first]
     return [first, first.beside(changes)]
+
+
+def is_traced_by(name: str) -> bool:
+    """Return whether a setting of this name changes the paths that are traced."""
+    return name in TABLE and TABLE[name].affects == "trace"
 
 
 def _look_beside(first: Scene, changes: dict[str, Any], field: FlowField) -> Appearance:

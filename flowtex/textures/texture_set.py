@@ -82,15 +82,11 @@ class TextureSet:
         Raises
         ------
         FieldError
-            When the slices belong to another number of nodes, or have too few or too many lags.
+            When the slices have too few or too many lags.
         SettingsError
             When an image is given for a surface of triangles.
         """
         field = store.field
-        if store.unit.shape != field.shape:
-            raise FieldError(
-                f"the slices have {store.unit.shape} nodes and the field {field.shape}; trace it"
-            )
         if field.uncertainty:
             least = UNCERTAIN_LAYER
         else:

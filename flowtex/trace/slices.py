@@ -9,16 +9,20 @@ the length of a streak does with every level of detail.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from flowtex._util import __version__
 from flowtex._util.arguments import checked_count, checked_number
 from flowtex._util.array_types import AnyArray, Floats, Indices
+from flowtex._util.cache import digest
 from flowtex.errors import FieldError
 from flowtex.field import FlowField
 from flowtex.field.interpolation import bracket
+from flowtex.trace.slice_files import read_group, write_group
 
 #: Arrays over the nodes, and the axis along which j runs in them.
 NODE_AXES = {
@@ -40,6 +44,47 @@ MOST_CELL = 16.0  #: Greatest size of cells in multiples of a common unit.
 RATIO = 2.0  #: Quotient of one lag and the one before.
 #: Least number of lags that are drawn; the uncertainty of a flow lies in the layer of one more.
 LEAST_LAGS = 2
+
+
+@dataclass(frozen=True)
+class SliceOrigin:
+    """The flow from which slices were traced.
+
+    Attributes
+    ----------
+    surface
+        Hash of the positions of the nodes and of how they are connected.
+    velocities
+        Hash of the velocity at each destination time, (T,).
+    length_unit, time_unit
+        Units of the field.
+    tolerance
+        Error that one step of the integration was allowed, in cells.
+    """
+
+    surface: str
+    velocities: tuple[str, ...]
+    length_unit: str
+    time_unit: str
+    tolerance: float
+
+    @classmethod
+    def of(cls, field: FlowField, steps: list[int], tolerance: float) -> SliceOrigin:
+        """Return the origin of slices of some time steps."""
+        velocities = tuple(digest(np.asarray(field.velocity[step])).hex() for step in steps)
+        return cls(
+            surface_hash(field), velocities, field.length_unit, field.time_unit, float(tolerance)
+        )
+
+
+def surface_hash(field: FlowField) -> str:
+    """Return a hash of the nodes of a field and of how they are connected."""
+    arrays = [field.points, field.valid]
+    if field.has_position is not None:
+        arrays.append(field.has_position)
+    if field.triangles is not None:
+        arrays.append(field.triangles)
+    return digest(*arrays, words=field.periodic).hex()
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -74,6 +119,8 @@ class TraceSlices:
         Destination times, (T,), in the field's unit.
     parameter
         What a lag measures: ``"arclength"`` or ``"time"``.
+    origin
+        The flow from which the slices were traced; ``None`` for a part of its nodes.
 
     Examples
     --------
@@ -82,6 +129,10 @@ class TraceSlices:
     >>> slices = flowtex.trace(field, lags=[1.0, 2.0, 4.0])
     >>> slices.positions(1.5).shape
     (21, 41, 2)
+    >>> slices.save("gyre_slices.zarr")
+    >>> stored = flowtex.TraceSlices.open("gyre_slices.zarr")
+    >>> flowtex.render(field, slices=stored, size=(320, 240)).shape
+    (240, 320, 3)
     """
 
     lags: Floats
@@ -94,6 +145,7 @@ class TraceSlices:
     nodes: Floats
     times: Floats
     parameter: str
+    origin: SliceOrigin | None = None
 
     @property
     def shape(self) -> tuple[int, int]:
@@ -115,11 +167,15 @@ class TraceSlices:
         """Return the slices of one destination time, with T = 1."""
         span = slice(step, step + 1 or None)
         slices = self.mapped(lambda data, axis: data[span] if axis else data)
-        return replace(slices, times=self.times[span])
+        origin = self.origin
+        if origin is not None:
+            origin = replace(origin, velocities=origin.velocities[span])
+        return replace(slices, times=self.times[span], origin=origin)
 
     def part(self, rows: slice, columns: slice | Indices) -> TraceSlices:
         """Return some rows and columns of the slices."""
-        return self.mapped(lambda data, axis: data[(slice(None),) * axis + (rows, columns)])
+        part = self.mapped(lambda data, axis: data[(slice(None),) * axis + (rows, columns)])
+        return replace(part, origin=None)
 
     def mapped(self, function: Callable[[AnyArray, int], AnyArray]) -> TraceSlices:
         """Apply a function to each array over the nodes, and to its axis of j."""
@@ -186,6 +242,121 @@ class TraceSlices:
         before = mean[m, rows, columns]
         after = mean[m + 1, rows, columns]
         return np.asarray(self.nodes + held[..., None] * (before * (1 - late) + after * late))
+
+    def save(self, path: str | Path) -> None:
+        """Write the slices to a Zarr group, a folder that replaces older slices of its name.
+
+        Its attributes have the lags, the times and the units, and hashes of the surface and of the
+        velocity. Arrays keep every bit.
+
+        Parameters
+        ----------
+        path
+            The folder, such as ``"gyre_slices.zarr"``.
+
+        Raises
+        ------
+        FieldError
+            When something else than slices has the name.
+        OSError
+            When the folder cannot be written.
+        ModuleNotFoundError
+            When Zarr is not installed; the error names the extra.
+
+        Examples
+        --------
+        >>> import flowtex
+        >>> field = flowtex.examples.double_gyre_field(shape=(21, 41))
+        >>> flowtex.trace(field, lags=[1.0, 2.0, 4.0]).save("gyre_slices.zarr")
+        """
+        arrays = {}
+        for name in NODE_AXES:
+            if getattr(self, name) is not None:
+                arrays[name] = getattr(self, name)
+        origin: dict[str, Any] = {}
+        if self.origin is not None:
+            origin = asdict(self.origin)
+            origin["velocities"] = list(self.origin.velocities)
+        about = {
+            "version": __version__,
+            "parameter": self.parameter,
+            "shape": list(self.shape),
+            "components": int(self.displacement.shape[-1]),
+            "times": self.times.tolist(),
+            "lags": self.lags.tolist(),
+            **origin,
+        }
+        write_group(path, arrays, about)
+
+    @classmethod
+    def open(cls, path: str | Path) -> TraceSlices:
+        """Read slices that :meth:`save` wrote.
+
+        Nothing in the folder is executed, and what it declares is checked.
+
+        Parameters
+        ----------
+        path
+            The folder.
+
+        Raises
+        ------
+        FieldError
+            When the folder contains no slices, another version wrote them, or they are damaged.
+        FileNotFoundError
+            When there is no such folder.
+        ModuleNotFoundError
+            When Zarr is not installed; the error names the extra.
+
+        Examples
+        --------
+        >>> import flowtex
+        >>> field = flowtex.examples.double_gyre_field(shape=(21, 41))
+        >>> flowtex.trace(field, lags=[1.0, 2.0, 4.0]).save("gyre_slices.zarr")
+        >>> flowtex.TraceSlices.open("gyre_slices.zarr").lags
+        array([1., 2., 4.])
+        """
+        arrays, about = read_group(path)
+        origin = None
+        if about.get("surface") is not None and about.get("velocities") is not None:
+            origin = SliceOrigin(
+                surface=about["surface"],
+                velocities=tuple(about["velocities"]),
+                length_unit=about.get("length_unit") or "",
+                time_unit=about.get("time_unit") or "",
+                tolerance=float(about.get("tolerance") or np.nan),
+            )
+        sides: dict[str, Any] = {"forward": None, "forward_reach": None, **arrays}
+        return cls(
+            lags=np.array(about["lags"], dtype=float),
+            times=np.array(about["times"], dtype=float),
+            parameter=about["parameter"],
+            origin=origin,
+            **sides,
+        )
+
+    def check_origin(self, field: FlowField) -> None:
+        """Raise a FieldError when the slices were traced from another flow than this one."""
+        if self.shape != field.shape:
+            raise FieldError(
+                f"the slices have {self.shape} nodes and the field {field.shape}; trace it"
+            )
+        if not np.array_equal(self.times, field.times):
+            raise FieldError(
+                f"the slices have {len(self.times)} destination times, from {self.times[0]:g} to "
+                f"{self.times[-1]:g}; expected the {len(field.times)} times of the field, from "
+                f"{field.times[0]:g} to {field.times[-1]:g}: trace it"
+            )
+        if self.origin is None:
+            return
+        if self.origin.surface != surface_hash(field):
+            raise FieldError("the slices were traced on another surface; trace the field")
+        for step, velocity in enumerate(self.origin.velocities):
+            if digest(np.asarray(field.velocity[step])).hex() != velocity:
+                raise FieldError(
+                    f"the slices were traced from another velocity at time step {step}; trace the "
+                    "field"
+                )
 
     def __repr__(self) -> str:
         rows, columns = self.shape

@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from flowtex._util.arguments import brief
 from flowtex._util.array_types import Bools, Indices
 from flowtex._util.cache import ByteCache, WeakCache, digest
 from flowtex.errors import FieldError
@@ -54,8 +55,8 @@ class SliceStore:
         cell: float | None = None,
         nodes: Bools | None = None,
     ) -> None:
-        if field.sign_free and slices is not None and slices.forward is None:
-            raise FieldError("the slices have only the backward side; a sign-free field needs both")
+        if slices is not None:
+            check_slices(field, slices)
         self.field = field
         #: Whether each destination time is traced as a steady field.
         self.streamlines = field.steady or chosen_lines(field, lines) == "streamlines"
@@ -154,6 +155,18 @@ class SliceStore:
         optional = (part for part in (field.has_position, field.triangles) if part is not None)
         choices = (field.periodic, field.sign_free, field.has_position is None, self.long_enough)
         return digest(*arrays, *optional, words=(choices, *sorted(options.items())))
+
+
+def check_slices(field: FlowField, slices: TraceSlices) -> None:
+    """Raise a FieldError when a field cannot be drawn with slices."""
+    if not isinstance(slices, TraceSlices):
+        raise FieldError(
+            f"slices is {brief(slices)}; expected TraceSlices, from flowtex.trace or "
+            "TraceSlices.open"
+        )
+    if field.sign_free and slices.forward is None:
+        raise FieldError("the slices have only the backward side; a sign-free field needs both")
+    slices.check_origin(field)
 
 
 _stores: WeakCache[SliceStore] = WeakCache()

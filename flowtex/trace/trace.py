@@ -29,7 +29,7 @@ from flowtex.field.validation import known_nodes
 from flowtex.trace.compose import Map, SideSlices, Within, compose, landings
 from flowtex.trace.integrate import MOST_CELLS, Paths, integrate
 from flowtex.trace.sampler import Sampler
-from flowtex.trace.slices import TraceSlices, choose_lags, lag_unit
+from flowtex.trace.slices import SliceOrigin, TraceSlices, choose_lags, lag_unit
 from flowtex.trace.triangles.triangle_slices import triangle_paths, triangle_slices
 
 A = TypeVar("A")
@@ -165,7 +165,8 @@ def trace(
         options |= {"tolerance": tolerance, "progress": progress}
         with _threads() as run:
             parts = step_numbers, parameter, lag_values, units, chosen
-            return triangle_slices(field, *parts, run=run, **options)
+            slices = triangle_slices(field, *parts, run=run, **options)
+        return replace(slices, origin=SliceOrigin.of(field, step_numbers, tolerance))
     directions = (-1.0, 1.0) if two_sided else (-1.0,)
     samplers = _samplers(field, step_numbers, parameter)
     whole = field.steady or step_numbers == list(range(len(field.times)))
@@ -194,6 +195,7 @@ def trace(
         nodes=tracing.nodes,
         times=field.times[step_numbers],
         parameter=parameter,
+        origin=SliceOrigin.of(field, step_numbers, tolerance),
     )
 
 

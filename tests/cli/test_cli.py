@@ -112,7 +112,8 @@ def test_every_setting_and_option_is_a_flag_with_its_sentence(run: Run) -> None:
         if row.kind is bool:
             assert f"--no-{row.name.replace('_', '-')}" in out
     for kind in (FieldOptions, Appearance, ViewOptions):
-        for name in set(kind.__dataclass_fields__) - {"times"}:  # a file has its own
+        # A file has its own times, and slices are no text.
+        for name in set(kind.__dataclass_fields__) - {"times", "slices"}:
             assert f"--{name.replace('_', '-')}" in out
     for words in ("1 is opaque, 0 invisible", "[default: 1.0]", "--no-lighting"):
         assert words in out
