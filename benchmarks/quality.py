@@ -8,7 +8,7 @@ surfaces.py, beside Surface LIC), ``popping`` (a slow zoom), ``motion`` and
 ``FLOWTEX_DATA``). All with the settings' defaults. ``--json FILE`` keeps the figures.
 
 ``--judge FILE`` takes another judge of streaks, grain, aliasing and motion instead of
-:mod:`paper.quality`: a module with the functions alignment, grain, aliasing and carried.
+:mod:`flowtex.quality`: a module with the functions alignment, grain, aliasing and carried.
 """
 
 from __future__ import annotations
@@ -24,12 +24,11 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 from scenes import Stage, gyre_field, gyre_view, vortex_view
-from scipy.ndimage import gaussian_filter
 from seams import across_lines, seams
 
 import flowtex
+from flowtex import quality
 from flowtex.rendering.diagnostics import require_opengl
-from paper import quality
 from paper.blocks import block_means
 
 Figures = dict[str, dict[str, float]]
@@ -43,8 +42,7 @@ JUDGE = SimpleNamespace(
     aliasing=quality.aliasing,
     carried=quality.sticking,
 )
-#: Deviation in pixels of the blur that leaves the clouds of a picture, and nodes of its surfaces.
-CLOUD_PIXELS, CLOUD_NODES = 12.0, 20_000
+CLOUD_NODES = 20_000  #: Nodes of the surfaces of which clouds are measured.
 #: Seconds from one frame of an animation to the next.
 FRAME = 1 / 30
 
@@ -70,22 +68,11 @@ def _all(picture: Any, view: Any) -> dict[str, float]:
     return {
         **figures,
         **JUDGE.grain(picture, view.u, view.v, view.mask),
-        "cloud": _cloud(picture, view.mask),
+        "cloud": quality.cloud(picture, view.mask),
         "deviation": float(np.asarray(picture, float).mean(axis=-1)[view.mask].std())
         if np.ndim(picture) == 3
         else float(picture[view.mask].std()),
     }
-
-
-def _cloud(picture: Any, mask: Any) -> float:
-    """Deviation of a blurred picture over that of the picture, of the pixels of a mask alone."""
-    grey = np.asarray(picture, float)
-    if grey.ndim == 3:
-        grey = grey[..., :3].mean(axis=-1)
-    detail = np.where(mask, grey - grey[mask].mean(), 0.0)
-    share = gaussian_filter(mask.astype(float), CLOUD_PIXELS)
-    blurred = gaussian_filter(detail, CLOUD_PIXELS)[mask] / share[mask]
-    return float(blurred.std() / detail[mask].std())
 
 
 def clouds() -> Figures:
@@ -116,7 +103,7 @@ def clouds() -> Figures:
             view = surface_view(flowtex.FlowField.from_pyvista(mesh), camera, size)
             plotter.close()
             streaks = JUDGE.streaks(picture, view.u, view.v, view.mask)
-            found[f"{name}, {case}"] = {**streaks, "cloud": _cloud(picture, view.mask)}
+            found[f"{name}, {case}"] = {**streaks, "cloud": quality.cloud(picture, view.mask)}
     return found
 
 

@@ -12,7 +12,7 @@ from scipy.ndimage import map_coordinates
 
 import flowtex
 
-sys.path.append(str(Path(__file__).parents[1]))  # for paper.quality
+sys.path.append(str(Path(__file__).parents[1]))  # for paper
 Floats = NDArray[np.float64]
 
 #: A point of the double gyre where nothing special happens.

@@ -19,7 +19,7 @@ from flowtex.trace.slices import TraceSlices
 from flowtex.trace.trace import trace
 
 if TYPE_CHECKING:
-    from flowtex import examples, pyramid
+    from flowtex import examples, pyramid, quality
     from flowtex.field.formula.make import formula
     from flowtex.host.export import export
     from flowtex.host.flow_widget import FlowWidget
@@ -52,6 +52,7 @@ __all__ = [
     "formula",
     "movie",
     "pyramid",
+    "quality",
     "render",
     "separatrices",
     "show",
@@ -85,7 +86,7 @@ def __getattr__(name: str) -> Any:
     """Import what draws (PyVista, VTK, the widget) only when it is used."""
     import importlib
 
-    if name in ("examples", "pyramid"):
+    if name in ("examples", "pyramid", "quality"):
         return importlib.import_module(f"flowtex.{name}")
     if name in _DRAWS:
         importlib.import_module("flowtex.rendering.diagnostics").begin_trial()

@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from flowtex._util.array_types import Bools, Floats
-from paper.quality import Grain, grain
+from flowtex.quality import Grain, grain
 
 
 def local_grain(picture: Floats, mask: Bools) -> Grain:

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 from scipy import ndimage
 
+from flowtex import quality
 from flowtex._util.array_types import Bools, Bytes, Floats
 from flowtex.field import FlowField
 from flowtex.rendering.camera import Camera
@@ -21,7 +22,6 @@ from flowtex.rendering.cpu.shade import shade
 from flowtex.rendering.cpu.texture import LookupMaker
 from flowtex.rendering.uniforms import ViewState
 from flowtex.settings import Settings
-from paper import quality
 from paper.bench import Bench
 from paper.blocks import block_means
 

@@ -7,8 +7,9 @@ from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
+from flowtex import quality
 from flowtex._util.array_types import Floats
-from paper import measures, quality
+from paper import measures
 from paper.bench import OURS, PAPER, Bench
 from paper.findings import Block, Claim, Finding, Panel, Plate, Section, Table, Text
 from paper.views import View, grey, view_of, wing_view

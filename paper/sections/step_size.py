@@ -7,10 +7,11 @@ from typing import Any
 
 import numpy as np
 
+from flowtex import quality
 from flowtex._util.array_types import Floats
 from flowtex.rendering.cpu.fragments import Fragments
 from flowtex.rendering.cpu.texture import LookupMaker
-from paper import measures, quality
+from paper import measures
 from paper.bench import PAPER, Bench
 from paper.findings import Claim, Finding, Panel, Plate, Section, Table
 from paper.noise_texture import NoiseImages, NoiseLookup, NoiseTextures

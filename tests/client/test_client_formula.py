@@ -14,9 +14,9 @@ from pages import COMPLETE, acted, opened_page
 from PIL import Image
 
 import flowtex
+from flowtex import quality
 from flowtex.scene.scene import Scene
 from flowtex.trace.slices import typical_speed
-from paper import quality
 
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, Page

@@ -10,7 +10,7 @@ import pyvista as pv
 import xarray as xr
 from flows import scattered_gyre
 
-from flowtex import FlowField
+from flowtex import FlowField, quality
 from flowtex._util.array_types import Floats
 from flowtex.errors import FieldError
 from flowtex.field.options import FieldOptions
@@ -20,7 +20,6 @@ from flowtex.rendering.cpu.render import Picture, render
 from flowtex.scene.fields import read_field, share_field
 from flowtex.scene.scene import Scene
 from flowtex.settings import Settings
-from paper import quality
 
 
 def straight() -> FlowField:

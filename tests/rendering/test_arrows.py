@@ -16,13 +16,13 @@ import flowtex
 from flowtex import FlowField
 from flowtex._util.array_types import Bytes, Floats
 from flowtex.field.grids.grid_surface import GridSurface
+from flowtex.quality import spacing
 from flowtex.rendering.arrow_seeds import ArrowSeeds, Seeds
 from flowtex.rendering.camera import Camera
 from flowtex.rendering.tile_choice import TileView
 from flowtex.rendering.uniforms import ARROW_LEAST
 from flowtex.textures.geometry import SurfaceGeometry
 from flowtex.trace.trace import paths
-from paper.quality import spacing
 
 SIZE = (600, 400)
 SPACING = 40  #: Pixels from an arrow to the next.

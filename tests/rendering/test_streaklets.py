@@ -9,7 +9,7 @@ import pytest
 from flows import fountain, gyre, lines, swinging
 from scipy import ndimage
 
-from flowtex import FlowField
+from flowtex import FlowField, quality
 from flowtex._util.array_types import Floats
 from flowtex.field.locate import locator
 from flowtex.rendering.camera import Camera
@@ -17,7 +17,6 @@ from flowtex.rendering.cpu.render import Picture, render
 from flowtex.rendering.uniforms import ViewState, is_sparse
 from flowtex.scene.scene import Scene
 from flowtex.settings import Settings
-from paper import quality
 
 SIZE = (120, 80)
 BORDER = quality.SENSE_WINDOW // 2  #: Pixels along the border that are not judged.

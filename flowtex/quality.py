@@ -1,7 +1,8 @@
 """Measures of how well a picture shows a flow, computed from its pixels.
 
-They compare methods of drawing. A picture is (H, W), or (H, W, 3), whose channels are averaged,
-with row 0 at the top. The flow at each pixel is ``u`` to the right and ``v`` up, of any length.
+They compare methods of drawing, and settings. A picture is (H, W), or (H, W, 3), whose channels are
+averaged, with row 0 at the top. The flow at each pixel is ``u`` to the right and ``v`` up, of any
+length.
 ``mask`` (H, W) selects the pixels to measure: by default those with a flow, except for a border of
 :data:`BORDER` pixels.
 
@@ -26,15 +27,19 @@ from flowtex.errors import FieldError
 
 #: Width of the border, in pixels, that is not measured by default.
 BORDER = 12
-#: Deviation in pixels of the derivative, and of the window over which directions are averaged.
-EDGE_PIXELS, WINDOW_PIXELS = 1.0, 4.0
+EDGE_PIXELS = 1.0  #: Standard deviation in pixels of the derivative.
+#: Standard deviation in pixels of the window over which directions are averaged.
+WINDOW_PIXELS = 4.0
 #: Shades wider than this many pixels are not grain.
 SHADE_PIXELS = 20.0
-#: Number of pixels at which grain is measured, and the largest distance.
-GRAIN_POINTS, MAX_DISTANCE_PIXELS = 20_000, 64
-#: Side in pixels of the window in which the sense is determined, and the percentile of the values
-#: above which a pixel belongs to a stroke.
-SENSE_WINDOW, STROKE_PERCENTILE = 29, 80
+GRAIN_POINTS = 20_000  #: Number of pixels at which grain is measured.
+MAX_DISTANCE_PIXELS = 64  #: Greatest length and width of grain in pixels.
+NEAR_PIXELS = 4.0  #: Distance up to which grain is measured in steps of a quarter of a pixel.
+SENSE_WINDOW = 29  #: Side in pixels of the window in which the direction of strokes is determined.
+STROKE_PERCENTILE = 80  #: Percentile of the values above which a pixel belongs to a stroke.
+CLOUD_PIXELS = (
+    12.0  #: Standard deviation in pixels of the blur that leaves the clouds of a picture.
+)
 
 
 class Alignment(NamedTuple):
@@ -42,7 +47,7 @@ class Alignment(NamedTuple):
 
     Examples
     --------
-    >>> from paper.quality import Alignment
+    >>> from flowtex.quality import Alignment
     >>> Alignment(1.9, 0.97).coherence
     0.97
     """
@@ -56,7 +61,7 @@ class Grain(NamedTuple):
 
     Examples
     --------
-    >>> from paper.quality import Grain
+    >>> from flowtex.quality import Grain
     >>> Grain(15.1, 1.2).along
     15.1
     """
@@ -102,7 +107,7 @@ def alignment(
     Examples
     --------
     >>> import numpy as np
-    >>> from paper.quality import alignment
+    >>> from flowtex.quality import alignment
     >>> stripes = np.sin(np.arange(80.0))[:, None] * np.ones((80, 100))
     >>> found = alignment(stripes, np.ones((80, 100)), np.zeros((80, 100)))
     >>> round(found.angle), round(found.coherence, 2)
@@ -112,9 +117,8 @@ def alignment(
     gx = scipy.ndimage.gaussian_filter(filled, EDGE_PIXELS, order=(0, 1))
     gy = scipy.ndimage.gaussian_filter(filled, EDGE_PIXELS, order=(1, 0))
     # As complex numbers of twice the angle, which are the same for opposite directions.
-    square, product = (
-        scipy.ndimage.gaussian_filter(part, window) for part in (gx * gx - gy * gy, gx * gy)
-    )
+    square = scipy.ndimage.gaussian_filter(gx * gx - gy * gy, window)
+    product = scipy.ndimage.gaussian_filter(gx * gy, window)
     turned = square + 2j * product
     energy = scipy.ndimage.gaussian_filter(gx * gx + gy * gy, window)
     flow = np.square(u - 1j * v)  # rows go down, v goes up
@@ -149,7 +153,7 @@ def grain(
     Examples
     --------
     >>> import numpy as np
-    >>> from paper.quality import grain
+    >>> from flowtex.quality import grain
     >>> stripes = np.sin(np.arange(80.0))[:, None] * np.ones((80, 100))
     >>> found = grain(stripes, np.ones((80, 100)), np.zeros((80, 100)))
     >>> found.along, round(found.across, 1)
@@ -161,15 +165,15 @@ def grain(
     pick = np.random.default_rng(seed).integers(0, len(rows), min(GRAIN_POINTS, 4 * len(rows)))
     start = np.stack([rows[pick], columns[pick]]).astype(float)
     length = np.maximum(np.hypot(u, v), np.finfo(float).tiny)
-    right, down = u / length, -v / length
-    return Grain(
-        _half_width(flat, start, np.stack([down, right])),
-        _half_width(flat, start, np.stack([right, -down])),
-    )
+    right = u / length
+    down = -v / length
+    along = _half_width(flat, start, np.stack([down, right]))
+    across = _half_width(flat, start, np.stack([right, -down]))
+    return Grain(along, across)
 
 
 def _half_width(flat: Floats, start: Floats, direction: Floats) -> float:
-    """Distance at which the mean product with the value at the start is half the mean square.
+    """Return the distance at which the mean product with the first value is half the mean square.
 
     Lines are followed from ``start``, (2, N) as (row, column), along unit vectors (2, H, W).
     """
@@ -177,23 +181,29 @@ def _half_width(flat: Floats, start: Floats, direction: Floats) -> float:
     power = float(np.mean(first_values * first_values))
     if power == 0:
         return float(MAX_DISTANCE_PIXELS)
-    position, distance, before = start.copy(), 0.0, 1.0
+    position = start.copy()
+    distance = 0.0
+    before = 1.0
     while distance < MAX_DISTANCE_PIXELS:
-        # Quarters of a pixel close by, where fine grain falls quickly; coarser steps farther off.
-        step = 0.25 if distance < 4 else 1.0
+        # The correlation of fine grain falls quickly.
+        step = 1.0
+        if distance < NEAR_PIXELS:
+            step = 0.25
         nearest = np.rint(position).astype(np.intp)
-        row, column = (np.clip(nearest[a], 0, flat.shape[a] - 1) for a in (0, 1))
+        row = np.clip(nearest[0], 0, flat.shape[0] - 1)
+        column = np.clip(nearest[1], 0, flat.shape[1] - 1)
         position = position + step * direction[:, row, column]
         values = scipy.ndimage.map_coordinates(flat, position, order=1, mode="nearest")
         correlation = float(np.mean(first_values * values)) / power
         if correlation < 0.5:
             return distance + step * (before - 0.5) / (before - correlation)
-        distance, before = distance + step, correlation
+        distance = distance + step
+        before = correlation
     return float(MAX_DISTANCE_PIXELS)
 
 
 def sense(picture: ArrayLike, u: ArrayLike, v: ArrayLike, mask: ArrayLike | None = None) -> float:
-    """Return the share of the pixels of strokes that show the sense of the flow.
+    """Return the share of the pixels of strokes that show the direction of the flow.
 
     A stroke with a head brightens slowly towards the head and ends there, so along the flow the
     picture has few but large steps downward: the cube of the derivative, averaged over a window, is
@@ -217,9 +227,10 @@ def sense(picture: ArrayLike, u: ArrayLike, v: ArrayLike, mask: ArrayLike | None
     Examples
     --------
     >>> import numpy as np
-    >>> from paper.quality import sense
+    >>> from flowtex.quality import sense
     >>> ramps = np.tile((np.arange(120) % 20) ** 2, (90, 1))
-    >>> ones, zeros = np.ones((90, 120)), np.zeros((90, 120))
+    >>> ones = np.ones((90, 120))
+    >>> zeros = np.zeros((90, 120))
     >>> sense(ramps, ones, zeros), sense(ramps, -ones, zeros)
     (1.0, 0.0)
     """
@@ -231,7 +242,57 @@ def sense(picture: ArrayLike, u: ArrayLike, v: ArrayLike, mask: ArrayLike | None
     along[scipy.ndimage.binary_dilation(edges, iterations=2)] = 0.0
     cubes = scipy.ndimage.uniform_filter(along**3, SENSE_WINDOW)
     strokes = mask & (filled > np.percentile(filled[mask], STROKE_PERCENTILE))
-    return float((cubes[strokes] < 0).mean()) if strokes.any() else 0.5
+    if not strokes.any():
+        return 0.5
+    return float((cubes[strokes] < 0).mean())
+
+
+def cloud(picture: ArrayLike, mask: ArrayLike | None = None) -> float:
+    """Return how uneven the texture of a picture is on a large scale.
+
+    A texture that is brighter in some places than in others looks cloudy. The picture is blurred
+    over 12 pixels, which leaves the clouds and removes the grain; pixels outside the mask have no
+    part in it.
+
+    Parameters
+    ----------
+    picture
+        The picture, (H, W) or (H, W, 3), without colours and shading that are not part of the
+        texture.
+    mask
+        Pixels to measure, (H, W); all by default.
+
+    Returns
+    -------
+    float
+        Standard deviation of the blurred picture over that of the picture: 0 for an even texture.
+
+    Raises
+    ------
+    FieldError
+        When the mask has another shape than the picture, or no pixel is left to measure.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from flowtex.quality import cloud
+    >>> stripes = np.sin(np.arange(80.0))[:, None] * np.ones((80, 100))
+    >>> shade = np.linspace(-1, 1, 100)
+    >>> round(cloud(stripes), 2), round(cloud(stripes + shade), 1)
+    (0.01, 0.6)
+    """
+    grey = _grey("picture", picture)
+    ones = np.ones(grey.shape)
+    if mask is None:
+        mask = ones > 0
+    inside = _checked(grey, ones, ones, mask)[3]
+    detail = np.where(inside, grey - grey[inside].mean(), 0.0)
+    share = scipy.ndimage.gaussian_filter(inside.astype(float), CLOUD_PIXELS)
+    blurred = scipy.ndimage.gaussian_filter(detail, CLOUD_PIXELS)[inside] / share[inside]
+    deviation = float(detail[inside].std())
+    if deviation == 0:
+        return 0.0
+    return float(blurred.std()) / deviation
 
 
 def sticking(
@@ -262,16 +323,16 @@ def sticking(
     Examples
     --------
     >>> import numpy as np
-    >>> from paper.quality import sticking
+    >>> from flowtex.quality import sticking
     >>> noise = np.random.default_rng(0).random((60, 80))
     >>> round(sticking(noise, np.roll(noise, 3, axis=1), 3, 0), 2)
     1.0
     """
     a, b = _pair(first=first, second=second)
     ones = np.ones(a.shape)
-    _, dx, dy, mask = _checked(
-        b, np.multiply(dx, ones), np.multiply(dy, ones), ones > 0 if mask is None else mask
-    )
+    if mask is None:
+        mask = ones > 0
+    _, dx, dy, mask = _checked(b, np.multiply(dx, ones), np.multiply(dy, ones), mask)
     rows, columns = np.indices(a.shape)
     place = [rows - dy, columns - dx]
     inside = mask & (place[0] >= 0) & (place[0] <= a.shape[0] - 1)
@@ -303,14 +364,16 @@ def aliasing(picture: ArrayLike, reference: ArrayLike, mask: ArrayLike | None = 
     Examples
     --------
     >>> import numpy as np
-    >>> from paper.quality import aliasing
+    >>> from flowtex.quality import aliasing
     >>> noise = np.random.default_rng(0).random((60, 80))
     >>> aliasing(noise, noise)
     0.0
     """
     a, b = _pair(picture=picture, reference=reference)
     ones = np.ones(a.shape)
-    mask = _checked(b, ones, ones, ones > 0 if mask is None else mask)[3]
+    if mask is None:
+        mask = ones > 0
+    mask = _checked(b, ones, ones, mask)[3]
     error = a[mask] - b[mask]
     return float(np.sqrt(np.mean(error**2)) / max(float(b[mask].std()), 1e-12))
 
@@ -337,14 +400,15 @@ def spacing(points: ArrayLike) -> float:
     Examples
     --------
     >>> import numpy as np
-    >>> from paper.quality import spacing
+    >>> from flowtex.quality import spacing
     >>> spacing(np.stack(np.meshgrid(range(5), range(4)), axis=-1).reshape(-1, 2))
     0.0
     """
     places = np.asarray(points, dtype=float)
     if places.ndim != 2 or places.shape[1] != 2 or len(places) < 2 or not np.isfinite(places).all():
-        msg = f"points has shape {places.shape}; expected (N, 2), two or more finite points"
-        raise FieldError(msg)
+        raise FieldError(
+            f"points has shape {places.shape}; expected (N, 2), two or more finite points"
+        )
     nearest = np.asarray(scipy.spatial.cKDTree(places).query(places, k=2)[0])[:, 1]
     return float(nearest.std() / max(nearest.mean(), np.finfo(float).tiny))
 
@@ -353,45 +417,56 @@ def _grey(name: str, picture: ArrayLike) -> Floats:
     """Return the mean of the channels; missing values are replaced by the mean of all."""
     array = np.asarray(picture)
     if array.dtype.kind not in "biuf" or array.ndim not in (2, 3) or array.size == 0:
-        msg = (
+        raise FieldError(
             f"{name} is {array.dtype} of shape {array.shape}; expected numbers of shape (H, W) or "
             "(H, W, 3)"
         )
-        raise FieldError(msg)
-    grey = array.astype(float) if array.ndim == 2 else array[..., :3].mean(axis=-1)
+    if array.ndim == 2:
+        grey = array.astype(float)
+    else:
+        grey = array[..., :3].mean(axis=-1)
     missing = ~np.isfinite(grey)
     if missing.all():
-        msg = f"{name} is NaN everywhere; expected a picture"
-        raise FieldError(msg)
+        raise FieldError(f"{name} is NaN everywhere; expected a picture")
+    if not missing.any():
+        return grey
     # Filters would spread missing values.
-    return np.where(missing, np.mean(grey[~missing]), grey) if missing.any() else grey
+    return np.where(missing, np.mean(grey[~missing]), grey)
 
 
 def _pair(**pictures: ArrayLike) -> tuple[Floats, Floats]:
+    """Return two pictures as grey values of the same shape."""
     (name, first), (other_name, second) = pictures.items()
-    a, b = _grey(name, first), _grey(other_name, second)
+    a = _grey(name, first)
+    b = _grey(other_name, second)
     if a.shape != b.shape:
-        msg = f"{name} has shape {a.shape} and {other_name} {b.shape}; expected the same"
-        raise FieldError(msg)
+        raise FieldError(
+            f"{name} has shape {a.shape} and {other_name} {b.shape}; expected the same"
+        )
     return a, b
 
 
 def _checked(
     picture: ArrayLike, u: ArrayLike, v: ArrayLike, mask: ArrayLike | None
 ) -> tuple[Floats, Floats, Floats, Bools]:
+    """Return a picture as grey values, the flow, and the pixels to measure, of one shape."""
     grey = _grey("picture", picture)
-    u, v = np.asarray(u, dtype=float), np.asarray(v, dtype=float)
-    for name, array in {"u": u, "v": v, "mask": np.asarray(mask)}.items():
-        if array.shape != grey.shape and not (name == "mask" and mask is None):
-            msg = f"{name} has shape {array.shape}; expected {grey.shape}, as the picture has"
-            raise FieldError(msg)
+    right = np.asarray(u, dtype=float)
+    up = np.asarray(v, dtype=float)
+    arrays = {"u": right, "v": up}
+    if mask is not None:
+        arrays["mask"] = np.asarray(mask)
+    for name, array in arrays.items():
+        if array.shape != grey.shape:
+            raise FieldError(
+                f"{name} has shape {array.shape}; expected {grey.shape}, as the picture has"
+            )
     if mask is None:
         inside = np.zeros(grey.shape, bool)
         inside[BORDER:-BORDER, BORDER:-BORDER] = True
-        mask = inside & (np.hypot(u, v) > 0)
-    has_flow = np.isfinite(u) & np.isfinite(v)
+        mask = inside & (np.hypot(right, up) > 0)
+    has_flow = np.isfinite(right) & np.isfinite(up)
     measured = np.asarray(mask, dtype=bool) & has_flow
     if not measured.any():
-        msg = "mask is False everywhere; expected pixels to judge"
-        raise FieldError(msg)
-    return grey, np.where(has_flow, u, 0.0), np.where(has_flow, v, 0.0), measured
+        raise FieldError("no pixel is left to measure; expected a mask that is True somewhere")
+    return grey, np.where(has_flow, right, 0.0), np.where(has_flow, up, 0.0), measured

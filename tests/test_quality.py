@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 from numpy.typing import NDArray
 from scipy.ndimage import gaussian_filter
 
-from paper import measures, quality
+import flowtex
+from flowtex import quality
+from paper import measures
 
 Floats = NDArray[np.float64]
 SIZE = (160, 200)
@@ -48,6 +52,83 @@ def test_grain_of_smoothed_noise_is_that_of_its_correlation(rng: np.random.Gener
     assert result.across == pytest.approx(1.5 * half, rel=0.12)
     turned = quality.grain(picture, 0 * ones, ones, EVERYWHERE)
     assert turned == pytest.approx((result.across, result.along), rel=0.05)
+
+
+def streaks(
+    rng: np.random.Generator, degrees: float, along: float, across: float
+) -> tuple[Floats, Floats, Floats]:
+    """Noise with a Gaussian correlation of these widths, at an angle, and the direction of it.
+
+    It is made in the frequency domain, and so without the filters that measure it.
+    """
+    a = np.radians(degrees)
+    down, right = np.meshgrid(np.fft.fftfreq(SIZE[0]), np.fft.fftfreq(SIZE[1]), indexing="ij")
+    parallel = right * np.cos(a) - down * np.sin(a)
+    normal = right * np.sin(a) + down * np.cos(a)
+    gain = np.exp(-2 * np.pi**2 * ((along * parallel) ** 2 + (across * normal) ** 2))
+    picture = np.fft.ifft2(gain * np.fft.fft2(rng.standard_normal(SIZE))).real
+    ones = np.ones(SIZE)
+    return picture / picture.std(), ones * np.cos(a), ones * np.sin(a)
+
+
+@pytest.mark.parametrize("degrees", [0, 30, 75, 120])
+@pytest.mark.parametrize(("along", "across"), [(4.0, 1.0), (6.0, 1.5)])
+def test_streaks_have_their_angle_and_their_width(
+    rng: np.random.Generator, degrees: float, along: float, across: float
+) -> None:
+    picture, u, v = streaks(rng, degrees, along, across)
+    aside = np.radians(10)
+    turned_u = u * np.cos(aside) - v * np.sin(aside)
+    turned_v = u * np.sin(aside) + v * np.cos(aside)
+    straight = quality.alignment(picture, u, v, EVERYWHERE)
+    turned = quality.alignment(picture, turned_u, turned_v, EVERYWHERE)
+    assert straight.angle < 7
+    assert straight.coherence > 0.75
+    assert turned.angle == pytest.approx(10, abs=3)
+    half = np.sqrt(2) * np.sqrt(2 * np.log(2))
+    found = quality.grain(picture, u, v, EVERYWHERE)
+    assert found.along == pytest.approx(along * half, rel=0.15)
+    assert found.across == pytest.approx(across * half, rel=0.15)
+
+
+def test_cloud_is_the_share_of_slow_shades(rng: np.random.Generator) -> None:
+    picture, _, _ = streaks(rng, 30, 4.0, 1.0)
+    rows, columns = np.indices(SIZE)
+    shade = np.sqrt(2) * np.sin(2 * np.pi * columns / SIZE[1])
+    # White noise behind a Gaussian has a variance in inverse proportion to its widths.
+    left = np.sqrt(4.0 * 1.0 / np.hypot(4.0, 12.0) / np.hypot(1.0, 12.0))
+    assert quality.cloud(picture) == pytest.approx(left, rel=0.2)
+    # A wave of 200 pixels is hardly blurred: exp(-2 (pi 12 / 200)^2) of it remain.
+    remains = np.exp(-2 * (np.pi * quality.CLOUD_PIXELS / SIZE[1]) ** 2)
+    expected = remains * 3 / np.sqrt(1 + 3**2)
+    assert quality.cloud(picture + 3 * shade) == pytest.approx(expected, abs=0.05)
+    assert quality.cloud(np.ones(SIZE)) == 0
+    # What lies outside the mask has no part in it.
+    spoilt = np.where(EVERYWHERE, picture, 50 + rows)
+    assert quality.cloud(spoilt, EVERYWHERE) == pytest.approx(
+        quality.cloud(np.where(EVERYWHERE, picture, 0), EVERYWHERE)
+    )
+
+
+@pytest.mark.parametrize(
+    ("given", "expected"),
+    [
+        (
+            {"u": np.ones((2, 2))},
+            r"u has shape \(2, 2\); expected \(160, 200\), as",
+        ),
+        ({"mask": np.ones((2, 2))}, r"mask has shape \(2, 2\)"),
+        ({"mask": np.zeros(SIZE)}, "no pixel is left to measure"),
+        ({"picture": np.full(SIZE, np.nan)}, "picture is NaN everywhere"),
+        ({"picture": np.ones(3)}, r"picture is float64 of shape \(3,\); expected numbers"),
+    ],
+)
+def test_arrays_that_do_not_fit_raise(given: dict[str, Floats], expected: str) -> None:
+    picture, u, v = stripes(30)
+    arguments: dict[str, Any] = {"picture": picture, "u": u, "v": v, **given}
+    for measure in (quality.alignment, quality.grain, quality.sense):
+        with pytest.raises(flowtex.FieldError, match=expected):
+            measure(**arguments)
 
 
 def test_a_sense_is_that_of_heads() -> None:
