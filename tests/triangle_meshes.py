@@ -43,6 +43,24 @@ def cube(cells: int) -> Mesh:
     return np.asarray(mesh.points, float), mesh.regular_faces.astype(int)
 
 
+def sheet(heights: Floats, cell: float = 1.0) -> Mesh:
+    """Return the surface at some heights (rows, columns) above a plane of square cells."""
+    rows, columns = heights.shape
+    y, x = cell * np.indices(heights.shape, dtype=float)
+    points = np.stack([x, y, heights], axis=-1).reshape(-1, 3)
+    node = np.arange(rows * columns).reshape(rows, columns)
+    near = np.stack([node[:-1, :-1], node[:-1, 1:], node[1:, 1:]], axis=-1)
+    far = np.stack([node[:-1, :-1], node[1:, 1:], node[1:, :-1]], axis=-1)
+    return points, np.concatenate([near.reshape(-1, 3), far.reshape(-1, 3)])
+
+
+def joined(*meshes: Mesh) -> Mesh:
+    """Return several surfaces as one that is not connected."""
+    first = np.cumsum([0, *(len(points) for points, _ in meshes)])
+    triangles = [part + n for n, (_, part) in zip(first, meshes, strict=False)]
+    return np.concatenate([points for points, _ in meshes]), np.concatenate(triangles)
+
+
 def tube(around: Floats, along: Floats, *, closed: bool) -> Mesh:
     """Return a tube along x with a section (n, 2) at places (m,), maybe with ends."""
     count = len(around)

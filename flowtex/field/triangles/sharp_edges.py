@@ -1,7 +1,8 @@
 """Sharp edges of a surface of triangles, whose faces have velocities of other directions there.
 
 Each face has its own nodes there, so that values of faces do not mix. A face is all triangles
-around a node that are joined by edges that are not sharp.
+around a node that are joined by edges that are not sharp. In noise, as of scanned terrain, nearly
+all edges are sharp, so that faces would be single triangles; nodes stay joined there.
 """
 
 from __future__ import annotations
@@ -25,6 +26,14 @@ from flowtex.field.triangles.triangle_nodes import (
 SHARP_EDGE = 0.82
 #: Cosine of half that angle: triangles that differ less from their mean have no sharp edge.
 SHARP_HALF = np.sqrt((1 + SHARP_EDGE) / 2)
+#: Fewest faces around a node of noise, one more than around the corner of a box.
+NOISE_FACES = 4
+#: Most nodes with as many faces on a surface without noise, such as the tips of pyramids.
+MOST_TIPS = 10_000
+#: Share of such nodes among all that sharp edges connect, above which these are noise.
+TIP_SHARE = 0.05
+#: Fewest nodes that sharp edges connect, on a surface with noise.
+LEAST_CHAIN = 20
 #: Height of a triangle, as a share of the surface's extent, below which its normal is rounding.
 LEAST_HEIGHT = 1e-6
 
@@ -102,13 +111,29 @@ def split_nodes(points: Floats, triangles: Indices) -> tuple[Indices, Indices]:
     face = scipy.sparse.csgraph.connected_components(graph, directed=False)[1]
     first = np.unique(face, return_index=True)[1]
     nodes = near.ravel()[loose[first]]  # those of the faces
-    is_new = np.ones(len(nodes), dtype=bool)
+    is_new = ~_in_noise(nodes, edges.ends[:, sharp], count)[nodes]
     is_new[np.unique(nodes, return_index=True)[1]] = False
     number = np.where(is_new, count - 1 + np.cumsum(is_new), nodes)
     near.ravel()[loose] = number[face]
     result = triangles.copy()
     result[around] = near
     return result, np.concatenate([np.arange(count), nodes[is_new]])
+
+
+def _in_noise(nodes: Indices, ends: Indices, count: int) -> Bools:
+    """Return which nodes (count,) lie in noise, from those of all faces, (F,), and of sharp edges.
+
+    There, sharp edges, whose nodes are (2, E), meet in many tips, or end after a few nodes.
+    """
+    is_tip = np.bincount(nodes, minlength=count) >= NOISE_FACES
+    if np.count_nonzero(is_tip) <= MOST_TIPS:
+        return np.zeros(count, dtype=bool)
+    graph = scipy.sparse.coo_array((np.ones(ends.shape[1], bool), ends), shape=(count, count))
+    chain = scipy.sparse.csgraph.connected_components(graph, directed=False)[1]
+    size = np.bincount(chain)
+    tips = np.bincount(chain, is_tip)
+    is_noise = (tips > TIP_SHARE * size) | (size < LEAST_CHAIN)
+    return np.asarray(is_noise[chain])
 
 
 def _bent_nodes(points: Floats, triangles: Indices) -> Bools:

@@ -4,7 +4,8 @@ Bins are cubes whose side is about twice the edges where they lie, and twice as 
 next level, so that a mesh of very different cells loses three nodes of four everywhere. Nodes on
 borders and sharp edges are binned apart from the others, which keeps outlines, and so are nodes of
 two sides of a thin sheet, and of parts that are not connected. Triangles remain where their corners
-lie in three bins. A bin at a sharp edge becomes a node for each face, all at one place.
+lie in three bins. A bin at a sharp edge becomes a node for each face, all at one place, unless so
+many faces meet there that they are smaller than the bin: then it becomes one node.
 """
 
 from __future__ import annotations
@@ -23,6 +24,7 @@ from flowtex.field.steps import Steps, map_steps
 from flowtex.field.triangles.triangle_nodes import (
     connected_parts,
     known_means,
+    nodal_sums,
     once,
     sums_at,
     triangle_normals,
@@ -31,12 +33,23 @@ from flowtex.field.triangles.triangle_surface import TriangleSurface
 
 #: Side of the first bins in edges there.
 FIRST_EDGES = 2.0
-#: Passes in which the edge of a node takes the value of its surroundings.
+#: Passes in which the edge of a node, or its noisy position, takes the value of its surroundings.
 SMOOTHING = 3
+#: Length of the sum of normals around a node, over that in a plane, below which it is in noise.
+EVEN_SHARE = 0.9
+#: Least share of such nodes on a noisy surface; others have them along edges.
+ROUGH_SHARE = 0.1
+#: Greatest cosine of the angle between the normals of two sides of a sheet.
+OPPOSITE = -0.5
 #: Rounds of the search for inverted triangles.
 UNTANGLING = 4
 #: Most bins along the surface's extent; three of their numbers fit into 64 bits.
 MOST_BINS = 2**18
+#: Most faces in a bin that stay apart: three meet in the corner of a box. Where there are more, the
+#: edges between them are too close for the next level, as in noise.
+MOST_FACES = 3
+#: Number of the face of nodes in which several faces were merged.
+MERGED = 0
 #: Most nodes of the next level, as a share of the nodes of a level that is not the last.
 MOST_LEFT = 0.7
 
@@ -54,10 +67,11 @@ class Clusters:
     sides: Floats
     #: First node at the place of each, (n,): at sharp edges each face has its own.
     places: Indices
-    face: Indices  #: The part without sharp edges that each node belongs to, (n,).
-    edge: Indices  #: The face, sharp edge or corner that each node lies on, (n,), from 0.
-    border: Bools  #: Nodes on the border of the drawn triangles, or on sharp edges, (n,).
+    face: Indices  #: The part without sharp edges that each node belongs to, (n,), or MERGED.
+    edge: Indices  #: The face, sharp edge or corner that each node lies on, (n,), or MERGED.
+    border: Bools  #: Nodes on the border of the drawn triangles, (n,).
     normals: Floats  #: Normals, (n, 3).
+    binned: Floats  #: Positions by which nodes are binned, (n, 3): without noise.
     part: Indices  #: Connected part of each node, (n,), numbered in the order of their extents.
 
     @classmethod
@@ -87,10 +101,11 @@ class Clusters:
         around = np.repeat(np.arange(len(triangles)), 3)
         places = surface.places
         joined = places[triangles]
-        normals = sums_at(joined.ravel(), crosses, field.shape[1], around)[places]
-        sides = _sides(norm(crosses), joined, len(normals), surface.extent)[places]
+        normals = sums_at(joined.ravel(), crosses, field.shape[1], around)
+        areas = norm(crosses)
+        sides = _sides(areas, joined, len(normals), surface.extent)[places]
+        binned, normals = _without_noise(field.points[0], joined, normals, areas)
         face = _faces(surface)
-        border[np.bincount(places)[places] > 1] = True
         return cls(
             field,
             field,
@@ -102,13 +117,15 @@ class Clusters:
             face,
             _edges(face, places),
             border,
-            normals,
+            normals[places],
+            binned[places],
             part,
         )
 
     def coarser(self) -> Clusters:
         """Return the next level, without triangles if all are smaller than the bins."""
-        cluster, corners, cells, bins = self._faced()
+        faces, edges = self._separate()
+        cluster, corners, cells, bins = self._faced(faces, edges)
         count = len(bins)
         _, first, at = np.unique(bins, return_index=True, return_inverse=True)
         places = first[at]
@@ -120,11 +137,12 @@ class Clusters:
         sides[cluster[kept]] = 2 * self.sides[kept]
         border[cluster[kept]] = self.border[kept]
         part[cluster[kept]] = self.part[kept]
-        edge[cluster[kept]] = self.edge[kept]
-        face[cluster[kept]] = self.face[kept]
+        edge[cluster[kept]] = edges[kept]
+        face[cluster[kept]] = faces[kept]
         normals = sums_at(places[cluster[kept]], self.normals[kept], count)[places]
         field = _averaged(self.whole, number, places, corners)
-        kept = _untangled(field.points[0], corners, normals, border)
+        at_edge = np.bincount(places)[places] > 1
+        kept = _untangled(field.points[0], corners, normals, border | at_edge)
         corners = corners[kept]
         cells = self.cells[cells[kept]]
         # A cell has the value of one of those in its place: means may be of none, such as a mark.
@@ -142,48 +160,68 @@ class Clusters:
             edge=edge,
             border=border,
             normals=normals,
+            binned=field.points[0],
             part=part,
         )
 
-    def _faced(self) -> tuple[Indices, Indices, Indices, Indices]:
+    def _separate(self) -> tuple[Indices, Indices]:
+        """Return face and edge of each node, (n,), MERGED where a bin has too many faces."""
+        if not self.face.any():
+            return self.face, self.edge
+        bins = np.unique(self._boxes(), return_inverse=True)[1]
+        count = int(self.face.max()) + 1
+        within = np.unique(bins * count + self.face) // count
+        is_crowded = (np.bincount(within) > MOST_FACES)[bins]
+        # All nodes at a place have the same bin.
+        face = np.where(is_crowded, MERGED, self.face)
+        edge = np.where(is_crowded, MERGED, self.edge)
+        return face, edge
+
+    def _faced(self, face: Indices, edge: Indices) -> tuple[Indices, Indices, Indices, Indices]:
         """Return the nodes of the next level, with one for each face of a bin.
 
         These are the node for each one here, (n,), or -1; corners of triangles (m, 3) and their
         numbers here, (m,); and the bin of each node of the next level.
         """
-        together = self._compact(self._bins())[self.places]
+        together = self._compact(self._bins(edge), edge)[self.places]
         corners, cells = once(together[self.triangles])
-        faces = int(self.face.max(initial=0)) + 1
-        kinds, cluster = np.unique(together * faces + self.face, return_inverse=True)
-        face = self.face[self.triangles[cells, :1]]
-        corners = np.searchsorted(kinds, corners * faces + face)
+        count = int(face.max(initial=0)) + 1
+        kinds, cluster = np.unique(together * count + face, return_inverse=True)
+        nodes = self.triangles[cells]
+        # Which corner of the triangle became which one of the merged triangle.
+        at = np.argmax(together[nodes][:, None] == corners[:, :, None], axis=2)
+        corners = cluster[np.take_along_axis(nodes, at, axis=1)]
         used = np.zeros(len(kinds), dtype=bool)
         used[corners] = True
         fresh = np.where(used, np.cumsum(used) - 1, -1)
-        return fresh[cluster], fresh[corners], cells, kinds[used] // faces
+        return fresh[cluster], fresh[corners], cells, kinds[used] // count
 
-    def _bins(self) -> Indices:
-        """Return the bin of each node, (n,), all of whose nodes face alike."""
-        points = self.field.points[0]
-        at = ((points - points.min(axis=0)) / self.sides[:, None]).astype(np.int64)
-        size = np.rint(np.log2(self.sides / self.sides.min())).astype(np.int64)
-        # Nodes that are not drawn are binned apart, and left out of the next level.
-        drawn = np.zeros(len(points), dtype=bool)
-        drawn[self.triangles] = True
-        key = 4 * size + 2 * drawn + self.border
+    def _boxes(self) -> Indices:
+        """Return the number of the box of space of each node, (n,)."""
+        at = ((self.binned - self.binned.min(axis=0)) / self.sides[:, None]).astype(np.int64)
+        key = np.rint(np.log2(self.sides / self.sides.min())).astype(np.int64)
         for axis in range(3):
             key = key * (int(at[:, axis].max()) + 1) + at[:, axis]
-        for kind in (self.part, self.edge):
+        return key
+
+    def _bins(self, edge: Indices) -> Indices:
+        """Return the bin of each node, (n,), all of whose nodes face alike."""
+        # Nodes that are not drawn are binned apart, and left out of the next level.
+        drawn = np.zeros(len(self.places), dtype=bool)
+        drawn[self.triangles] = True
+        key = 4 * self._boxes() + 2 * drawn + self.border
+        for kind in (self.part, edge):
             if kind.any():
                 bins = np.unique(key, return_inverse=True)[1]
                 key = bins * (int(kind.max()) + 1) + kind
         _, first, cluster = np.unique(key, return_index=True, return_inverse=True)
-        away = np.einsum("nc,nc->n", self.normals, self.normals[first][cluster]) < 0
+        away = dot(self.normals, self.normals[first][cluster]) < 0
+        away &= _are_opposite(cluster, away, self.normals)[cluster]
         return np.asarray(np.unique(2 * cluster + away, return_inverse=True)[1])
 
-    def _compact(self, cluster: Indices) -> Indices:
+    def _compact(self, cluster: Indices, edge: Indices) -> Indices:
         """Return clusters (n,) in which each node belongs to the nearest one beside it."""
-        points = self.field.points[0]
+        points = self.binned
         count = int(cluster.max()) + 1
         center = sums_at(cluster, points, count) / np.bincount(cluster)[:, None]
         normal = sums_at(cluster, self.normals, count)
@@ -195,7 +233,7 @@ class Clusters:
             beside = self.triangles[:, k]
             candidate = cluster[beside]
             alike = self.border[node] == self.border[beside]
-            alike &= self.edge[node] == self.edge[beside]
+            alike &= edge[node] == edge[beside]
             other = np.flatnonzero((cluster[node] != candidate) & alike)
             node = node[other]
             candidate = candidate[other]
@@ -226,6 +264,40 @@ def levels_of(field: FlowField, nodes: int) -> list[Clusters]:
     return levels
 
 
+def _are_opposite(bins: Indices, away: Bools, normals: Floats) -> Bools:
+    """Return in which bins nodes (n,) that face ``away`` and the others are two sides of a sheet.
+
+    In noise both face about the same way, in their means.
+    """
+    count = int(bins.max(initial=-1)) + 1
+    mixed = np.zeros(count, dtype=bool)
+    mixed[bins[away]] = True
+    near = np.flatnonzero(mixed[bins])
+    sums = sums_at(2 * bins[near] + away[near], normals[near], 2 * count).reshape(count, 2, 3)
+    first, second = sums.swapaxes(0, 1)
+    return np.asarray(dot(first, second) < OPPOSITE * norm(first) * norm(second))
+
+
+def _without_noise(
+    points: Floats, triangles: Indices, normals: Floats, areas: Floats
+) -> tuple[Floats, Floats]:
+    """Return positions and normals (N, 3); where many triangles are turned, means around.
+
+    Noise may be higher than bins, which would cut through it.
+    """
+    total = nodal_sums(triangles, areas[:, None], len(points))[:, 0]
+    is_rough = norm(normals) < EVEN_SHARE * total
+    if np.count_nonzero(is_rough) < ROUGH_SHARE * np.count_nonzero(total):
+        return points, normals
+    share = np.maximum(np.bincount(triangles.ravel(), minlength=len(points)), 1)
+    values = np.hstack([points, normals])
+    for _ in range(SMOOTHING):
+        middle = np.asarray(sum(values[triangles[:, k]] for k in range(3))) / 3
+        means = nodal_sums(triangles, middle, len(points)) / share[:, None]
+        values = np.where(is_rough[:, None], means, values)
+    return values[:, :3], values[:, 3:]
+
+
 def _border_nodes(surface: TriangleSurface) -> Bools:
     """Return which nodes are ends of a side without a drawn triangle beyond it, (N,)."""
     triangles = surface.triangles
@@ -252,18 +324,18 @@ def _parts_by_extent(surface: TriangleSurface, points: Floats) -> Indices:
 
 
 def _faces(surface: TriangleSurface) -> Indices:
-    """Return the part without sharp edges that each node (N,) of a surface belongs to."""
+    """Return the part without sharp edges of each node, (N,), from 1 if there are several."""
     count = surface.shape[1]
     if (surface.places == np.arange(count)).all():
         return np.zeros(count, dtype=np.intp)
     first, second, third = surface.triangles.T
     links = np.concatenate([first, second]), np.concatenate([second, third])
     graph = scipy.sparse.coo_array((np.ones(len(links[0]), bool), links), shape=(count, count))
-    return scipy.sparse.csgraph.connected_components(graph, directed=False)[1].astype(np.intp)
+    return scipy.sparse.csgraph.connected_components(graph, directed=False)[1].astype(np.intp) + 1
 
 
 def _edges(face: Indices, places: Indices) -> Indices:
-    """Return numbers from 0, (n,), the same for nodes that lie in or between the same faces."""
+    """Return numbers from 1, (n,), the same for nodes that lie in or between the same faces."""
     if not face.any():
         return face
     least = face.copy()
@@ -271,7 +343,7 @@ def _edges(face: Indices, places: Indices) -> Indices:
     np.minimum.at(least, places, face)
     np.maximum.at(most, places, face)
     kinds = np.stack([least, most, np.bincount(places, minlength=len(face))], axis=-1)[places]
-    return np.asarray(np.unique(kinds, axis=0, return_inverse=True)[1].ravel(), np.intp)
+    return np.asarray(np.unique(kinds, axis=0, return_inverse=True)[1].ravel(), np.intp) + 1
 
 
 def _averaged(field: FlowField, number: Indices, places: Indices, triangles: Indices) -> FlowField:

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 import pyvista as pv
-from triangle_meshes import cube, soup, sphere, surface_of
+from triangle_meshes import cube, joined, sheet, soup, sphere, surface_of
 
 from flowtex import FlowField
 from flowtex._util.array_types import Floats, Indices
@@ -79,6 +79,21 @@ def test_smooth_surface_is_read_without_neighbours_of_triangles() -> None:
     surface: Any = field.surface
     assert not surface.flipped.any()
     assert "neighbours" not in surface.__dict__
+
+
+def test_noise_has_no_faces_and_a_box_beside_it_keeps_its_own(
+    rng: np.random.Generator, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("flowtex.field.triangles.sharp_edges.MOST_TIPS", 500)
+    terrain = sheet(rng.normal(size=(60, 60)))
+    box = cube(10)
+    points, triangles = joined(terrain, (box[0] + [0, 0, 20], box[1]))
+    split, origin = split_nodes(points, triangles)
+    new = origin[len(points) :]
+    assert (new >= len(terrain[0])).all()
+    # A cube of 10 x 10 squares a side has 12 edges with 9 nodes inside, and 8 corners.
+    assert len(new) == 12 * 9 + 8 * 2
+    np.testing.assert_array_equal(split[: len(terrain[1])], terrain[1])
 
 
 @pytest.mark.parametrize("name", BODIES)

@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
+import itertools
 from typing import Any
 
 import numpy as np
 import pytest
-from triangle_meshes import cube, random_plane, sphere
+from triangle_meshes import cube, joined, random_plane, sheet, sphere, surface_of
 
 import flowtex
 from flowtex import FlowField
 from flowtex._util.array_types import Floats, Indices
 from flowtex.textures.texture_set import TextureSet
-from flowtex.textures.tiles.clusters import levels_of
+from flowtex.textures.tiles.clusters import MERGED, Clusters, levels_of
 from flowtex.textures.tiles.pyramid import TileKey
 from flowtex.textures.tiles.shared import shared_pyramid
 from flowtex.textures.tiles.triangle_pyramid import TrianglePyramid
@@ -113,8 +114,7 @@ def test_sides_of_a_thin_sheet_stay_apart(rng: np.random.Generator) -> None:
 
 def test_surfaces_close_to_one_another_stay_apart() -> None:
     points, triangles = sphere(4)
-    both = np.concatenate([triangles, triangles + len(points)])
-    field = flow_on(np.concatenate([points, 1.01 * points]), both)
+    field = flow_on(*joined((points, triangles), (1.01 * points, triangles)))
     outer = np.arange(2 * len(points)) >= len(points)
     for level in levels_of(field, 200)[1:]:
         kept = level.number >= 0
@@ -122,6 +122,67 @@ def test_surfaces_close_to_one_another_stay_apart() -> None:
         of_outer = np.bincount(level.number[kept], outer[kept])
         assert ((of_outer == 0) | (of_outer == count)).all()
         assert level.field.shape[1] > 50
+
+
+def open_sides(level: Clusters) -> int:
+    """Return how many sides of triangles lie away from the border of the surface."""
+    surface = surface_of(level.field)
+    triangle, corner = np.nonzero(surface.neighbours < 0)
+    ends = surface.triangles[triangle[:, None], (corner[:, None] + [1, 2]) % 3]
+    return int((~level.border[ends].all(axis=1)).sum())
+
+
+def test_levels_of_rough_terrain_are_smooth_and_whole(
+    rng: np.random.Generator, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("flowtex.field.triangles.sharp_edges.MOST_TIPS", 500)
+    side = 120
+    points, triangles = sheet(rng.normal(size=(side, side)))
+    levels = levels_of(flow_on(points, triangles), 600)
+    assert levels[0].field.shape[1] == side**2
+    for finer, level in itertools.pairwise(levels):
+        assert level.field.shape[1] < 0.4 * finer.field.shape[1]
+        assert open_sides(level) < 0.01 * len(level.triangles)
+    # The noise of the means is less than a cell, so that the surface is hardly larger than flat.
+    area = np.linalg.norm(surface_of(levels[-1].field).crosses, axis=1).sum() / 2
+    assert area == pytest.approx((side - 1) ** 2, rel=0.02)
+
+
+def test_two_sides_of_a_rough_sheet_stay_apart(
+    rng: np.random.Generator, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("flowtex.field.triangles.sharp_edges.MOST_TIPS", 500)
+    heights = rng.normal(size=(60, 60))
+    points, triangles = sheet(heights)
+    # Two sides that are joined along one border only, closer to each other than the bins.
+    rim = np.zeros((60, 60), dtype=bool)
+    rim[0] = True
+    below = np.where(rim.ravel(), np.arange(len(points)), np.arange(len(points)) + len(points))
+    lower = points - [0, 0, 0.3]
+    both = np.concatenate([points, lower]), np.concatenate([triangles, below[triangles[:, ::-1]]])
+    field = flow_on(*both)
+    is_lower = np.isin(field.points[0].round(9), lower.round(9)).all(axis=1)
+    x, y = field.points[0, :, :2].T
+    inside = (np.minimum(x, y) > 20) & (np.maximum(x, y) < 40)
+    for level in levels_of(field, 600)[1:]:
+        kept = (level.number >= 0) & inside
+        count = np.bincount(level.number[kept])
+        of_lower = np.bincount(level.number[kept], is_lower[kept])
+        assert ((of_lower == 0) | (of_lower == count)).mean() > 0.97
+
+
+def test_steps_smaller_than_bins_become_a_slope() -> None:
+    points, triangles = sheet(np.zeros((80, 80)))
+    number = points[:, 0].copy()
+    points[:, 0] = np.ceil(number / 2)
+    points[:, 2] = np.floor(number / 2)
+    levels = levels_of(flow_on(points, triangles), 300)
+    assert surface_of(levels[0].field).at_edge.mean() > 0.9
+    last = levels[-1]
+    assert last.field.shape[1] < 600
+    assert (last.face == MERGED).mean() > 0.3
+    x, _, z = last.field.points[0].T
+    assert np.abs(x - z).max() < 1.5
 
 
 @pytest.mark.parametrize("make", [plane, graded, lambda rng: ball(), lambda rng: shells()])
