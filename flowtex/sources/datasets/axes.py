@@ -16,19 +16,13 @@ from flowtex.field import units
 from flowtex.field.dates import as_seconds, span_since
 from flowtex.field.options import FieldOptions
 from flowtex.sources.datasets import labels
-from flowtex.sources.datasets.levels import pressure_unit, surface_level
+from flowtex.sources.datasets.levels import LEVELS, pressure_unit, surface_level
 from flowtex.sources.notices import Record
 
 if TYPE_CHECKING:
     import xarray as xr
 
-#: Names of axes that are vertical, of time, and horizontal, where no attribute says so.
-LEVELS = re.compile(
-    r"^(s_rho|s_w|sc_r|nav_lev|k|k_\w|lev\w*|depth\w*|z|z_\w+|zl|height\w*|altitude|"
-    r"level\w*|plev\w*|isobaric\w*|pressure\w*|sigma\w*|hybrid\w*|bottom_top\w*|rc|zc|"
-    r"sig(lay|lev)|nz_?\d?|\w*layers?|\w*vgrid\w*|n?vert_?levels\w*)$",
-    re.IGNORECASE,
-)
+#: Names of axes of time, and horizontal ones, where no attribute says so.
 TIMES = re.compile(r"^(t|n?times?|time_?\w*|\w+_time|dates?|frames?)$", re.IGNORECASE)
 ROWS = re.compile(r"^(y\w*|j\w*|lat\w*|nlat|eta\w*|south_north\w*|rlat)$", re.IGNORECASE)
 COLUMNS = re.compile(r"^(x\w*|i\w*|lon\w*|nlon|xi\w*|west_east\w*|rlon)$", re.IGNORECASE)

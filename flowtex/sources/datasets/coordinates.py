@@ -30,8 +30,17 @@ LATITUDE = re.compile(
     r"^(nav_lat|(.*_)?lat(itude)?(_\w+)?|lat[a-z]?|[cev]lat|xlat.*|gphi\w?|geolat\w*|[tu]lat|yc|yg)$",
     re.I,
 )
-ACROSS = re.compile(r"^(x|x_?c|x_?g|x_\w+|xp1|rlon|projection_x_coordinate)$", re.I)
-UPWARD = re.compile(r"^(y|y_?c|y_?g|y_\w+|yp1|rlat|projection_y_coordinate)$", re.I)
+#: Words before the letter of a coordinate, as in ``node_x``, ``FlowElem_xcc`` and ``pos_y``.
+OF_POINTS = (
+    r"\w*(node|face|elem(ent)?|cell|point|particle|vert(ex)?|cent(er|re|roid)|pos(ition)?|"
+    r"coord(inate)?)s?_?{}c{{0,2}}"
+)
+ACROSS = re.compile(
+    rf"^(x|x_?c|x_?g|x_\w+|xp1|rlon|projection_x_coordinate|{OF_POINTS.format('x')})$", re.I
+)
+UPWARD = re.compile(
+    rf"^(y|y_?c|y_?g|y_\w+|yp1|rlat|projection_y_coordinate|{OF_POINTS.format('y')})$", re.I
+)
 #: Letters for the place in a cell of a staggered grid: its middle first.
 MIDDLES = ("rho", "t", "c", "r", "")
 #: Parts of the names of two coordinates that belong together.
@@ -459,6 +468,12 @@ def _own_line(array: xr.DataArray, dim: str, datasets: Sequence[xr.Dataset]) -> 
     for holder in (array.coords, *datasets):
         if dim in holder and holder[dim].dims == (dim,) and holder[dim].dtype.kind in "fiu":
             return holder[dim]
+    alike = []
+    for c in array.coords.values():
+        if c.dims == (dim,) and c.dtype.kind in "fiu":
+            alike.append(c)
+    if len(alike) == 1:
+        return alike[0]
     return None
 
 

@@ -50,7 +50,7 @@ from flowtex.sources.datasets.coordinates import LATITUDE, LONGITUDE, Beside, Pl
 from flowtex.sources.datasets.curved import with_lonlat
 from flowtex.sources.datasets.masks import Mask, find_masks, is_constant, moves_over_land
 from flowtex.sources.datasets.select import Pair
-from flowtex.sources.datasets.staggered import find_grid, unrepeated
+from flowtex.sources.datasets.staggered import find_grid, lies_in, unrepeated
 from flowtex.sources.datasets.values import (
     Component,
     Values,
@@ -325,13 +325,26 @@ class Flow:
                 if len(found.one) < len(wanted):
                     return None
                 at.append(found.other)
-            elif dim != cell:
+            elif dim != cell and not self._lies_in_cells(part):
                 return None
         if at:
             part = part.isel(dict(zip(surface, at, strict=False)))
         if part.shape[-2:] == self.shape:
             return part
         return None
+
+    def _lies_in_cells(self, part: xr.DataArray) -> bool:
+        """Return whether a variable lies in the middle of all cells of a staggered grid."""
+        if not self.staggered or part.shape[-2:] != self.shape:
+            return False
+        rows = np.arange(self.shape[0])
+        columns = np.arange(self.shape[1])
+        if self.values.rows is not None:
+            rows = self.values.rows.cells
+        if self.values.columns is not None:
+            columns = self.values.columns.cells
+        beside = Beside(self.datasets, self.drawn, self.record)
+        return lies_in(part, self.places, (np.ix_(rows, columns), self.trimmed), beside)
 
     @property
     def shape(self) -> tuple[int, ...]:

@@ -16,6 +16,15 @@ from flowtex.field import units
 if TYPE_CHECKING:
     import xarray as xr
 
+#: Names of vertical axes, where no attribute says so.
+LEVELS = re.compile(
+    r"^(s_rho|s_w|sc_r|nav_lev|k|k_\w|lev\w*|depth\w*|z|z_\w+|zl|height\w*|altitude|"
+    r"level\w*|plev\w*|isobaric\w*|pressure\w*|sigma\w*|hybrid\w*|bottom_top\w*|rc|zc|"
+    r"sig(lay|lev)|nz_?\d?|lay\w*|\w*layers?|\w*vgrid\w*|n?vert_?levels\w*)$",
+    re.IGNORECASE,
+)
+#: Standard names of vertical coordinates.
+VERTICAL = re.compile(r"^(atmosphere|ocean)_\w*coordinate$|^(height|depth|altitude|air_pressure)$")
 #: Names of levels that are pressures.
 PRESSURE_NAMES = re.compile(r"^(p|plev\w*|pressure\w*|isobaric\w*)$", re.IGNORECASE)
 #: Names of levels, or words of their attributes, that are lengths.
@@ -34,6 +43,35 @@ CURRENTS = re.compile(r"^[uv]o$")
 USUAL_HPA = (1000, 950, 925, 900, 850, 800, 700, 600, 500, 400, 300, 250, 200, 150, 100, 50)
 #: Greatest pressure in hPa, beyond which numbers without a unit are pascals.
 MOST_HPA = 2000.0
+
+
+def with_levels(ds: xr.Dataset) -> xr.Dataset:
+    """Return a dataset whose vertical axes have the values of variables that belong to them."""
+    found: dict[str, xr.Variable] = {}
+    for name, variable in ds.variables.items():
+        if variable.ndim != 1 or variable.dtype.kind not in "fiu":
+            continue
+        (dim,) = map(str, variable.dims)
+        if dim not in ds.variables and dim not in found and _are_levels(str(name), dim, variable):
+            found[dim] = variable
+    lines = {}
+    for dim, variable in found.items():
+        lines[dim] = (dim, variable.values, {**variable.attrs, "axis": "Z"})
+    return ds.assign_coords(lines)
+
+
+def _are_levels(name: str, dim: str, variable: xr.Variable) -> bool:
+    """Return whether a variable has the values of a vertical axis, by its attributes or names."""
+    attrs = variable.attrs
+    standard = str(attrs.get("standard_name", ""))
+    declared = "formula_terms" in attrs or standard.endswith("_coordinate")
+    named = LEVELS.match(dim) and (LEVELS.match(name) or "positive" in attrs or standard)
+    if not ((declared or named) and (VERTICAL.match(standard) or not standard)):
+        return False
+    if attrs.get("axis") not in (None, "Z") or variable.size < 2:
+        return False
+    steps = np.diff(np.asarray(variable.values, dtype=float))
+    return bool((steps > 0).all() or (steps < 0).all())
 
 
 def surface_level(coordinate: xr.DataArray | None, line: AnyArray, velocity: xr.DataArray) -> int:

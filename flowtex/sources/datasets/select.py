@@ -222,7 +222,24 @@ def find_pairs(datasets: Sequence[xr.Dataset]) -> list[Pair]:
     for partners in (PARTNERS, SECTION_PARTNERS):
         if pairs := _cartesian(arrays, partners):
             return sorted(pairs, key=_preference)
-    return [*_speeds(arrays), *_curved(arrays)]
+    return [*_speeds(arrays), *_curved(arrays), *_as_coordinates(arrays)]
+
+
+def _as_coordinates(arrays: Sequence[xr.DataArray]) -> Iterator[Pair]:
+    """Yield components whose names end as those of the coordinates, as velocity_n and grid_n."""
+    for u, v in product(arrays, arrays):
+        first, _, across = str(u.name).rpartition("_")
+        second, _, upward = str(v.name).rpartition("_")
+        dims = horizontal_dims(u)
+        if first != second or not MOVING.search(first) or u.dims != v.dims or len(dims) < 2:
+            continue
+        on_axis = set()
+        for name, c in u.coords.items():
+            on_axis.add((c.dims, str(name).rpartition("_")[2]))
+        is_told = {(dims[:1], upward), (dims[1:], across)} <= on_axis
+        if is_told and _match(u, v):
+            why = f"names that end as those of the coordinates, with {across!r} and {upward!r}"
+            yield Pair(u, v, "", why, 5)
 
 
 def _cartesian(arrays: Sequence[xr.DataArray], partners: Mapping[str, str]) -> list[Pair]:

@@ -9,7 +9,7 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -320,6 +320,22 @@ def _own_places(array: xr.DataArray, beside: Beside) -> Places | None:
         return find_places(array, dims, beside._replace(datasets=[part]), any_axes=False)
     except FieldError:
         return None
+
+
+def lies_in(array: xr.DataArray, cells: Places, at: tuple[Any, ...], beside: Beside) -> bool:
+    """Return whether a variable lies in the middle of cells, though its dimensions are others.
+
+    Its positions decide, in the parts ``at`` that are drawn, or without any its names.
+    """
+    own = _own_places(array, beside)
+    if own is None:
+        return all(map(MIDDLE_DIM.search, horizontal_dims(array)))
+    for part in at:
+        own = own.part(part)
+    if own.is_earth != cells.is_earth or own.a.shape != cells.a.shape:
+        return False
+    offset = _offset(cells, own)
+    return offset is not None and max(map(abs, offset)) < HALF
 
 
 def _source(array: xr.DataArray, datasets: Sequence[xr.Dataset]) -> xr.Dataset:

@@ -14,8 +14,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from flowtex.errors import FieldError
-from flowtex.sources.datasets.axes import FACES, LEVEL, LEVELS, NODES, TIME, axis_kind
+from flowtex.sources.datasets.axes import FACES, LEVEL, NODES, TIME, axis_kind
 from flowtex.sources.datasets.coordinates import ACROSS, LONGITUDE, SWAPS
+from flowtex.sources.datasets.levels import LEVELS
 from flowtex.sources.datasets.select import MOVING, Pair, find_pairs
 from flowtex.sources.datasets.vertical import is_vertical
 from flowtex.sources.models.healpix import with_centres
@@ -62,15 +63,29 @@ NAMED = 4
 
 
 def find_mesh(datasets: Sequence[xr.Dataset]) -> Mesh | None:
-    """Return the mesh of datasets that belong together; ``None`` where they have none."""
+    """Return the mesh of datasets that belong together; ``None`` where they have none.
+
+    Of several meshes it is the first on which a velocity lies.
+    """
+    meshes = _meshes(datasets)
+    first = next(meshes, None)
+    if first is None:
+        return None
+    carrying = {str(dim) for pair in find_pairs(datasets) for dim in pair.u.dims}
+    for mesh in (first, *meshes):
+        if carrying & {*filter(None, mesh.dims)}:
+            return mesh
+    return first
+
+
+def _meshes(datasets: Sequence[xr.Dataset]) -> Iterator[Mesh]:
+    """Yield the meshes of datasets, those of a convention first."""
     variables: dict[str, xr.DataArray] = {}
     for ds in datasets:
         for name in ds.variables:
             variables.setdefault(str(name), ds[name])
     for find in (_ugrid, _of_models, _bounded, _of_named_faces, points_in):
-        for mesh in find(variables):
-            return mesh
-    return None
+        yield from find(variables)
 
 
 def _ugrid(variables: Mapping[str, xr.DataArray]) -> Iterator[Mesh]:

@@ -25,6 +25,8 @@ if TYPE_CHECKING:
 POINTS = "points"
 #: Decimals of degrees to which bounds of neighbours agree.
 SAME_DEGREES = 5
+#: Share of the extent of a plane up to which they agree there.
+SAME_SHARE = 1e-7
 LONGITUDES = re.compile(r"lon|lambda", re.IGNORECASE)
 #: Names of longitudes that ICON gives in radians, of cells, edges and vertices.
 OF_ICON = re.compile(r"[cev]lon(_vertices)?$")
@@ -136,7 +138,7 @@ class Mesh:
             most = self.greatest_edge
             return a, b, join_points(positions, on_sphere=self.is_earth, max_edge=most)
         if self.corners is None:
-            return _from_bounds(a, b)
+            return _from_bounds(a, b, is_earth=self.is_earth)
         return a, b, _numbers(self, self.corners, len(a))
 
     @property
@@ -284,13 +286,17 @@ def _numbers(mesh: Mesh, corners: xr.DataArray, count: int) -> Indices:
     return _corners_first(np.where(present, values, -1))
 
 
-def _from_bounds(a: Floats, b: Floats) -> tuple[Floats, Floats, Indices]:
+def _from_bounds(a: Floats, b: Floats, *, is_earth: bool) -> tuple[Floats, Floats, Indices]:
     """Return one node for all corners of cells, (F, K) each, at one place."""
     present = np.isfinite(a) & np.isfinite(b)
-    p = Projection(GLOBE).positions(a[present], b[present]) / EARTH_RADIUS
-    _, first, at = np.unique(
-        np.round(np.degrees(p), SAME_DEGREES), axis=0, return_index=True, return_inverse=True
-    )
+    p = _positions(a[present], b[present], is_earth)
+    if is_earth:
+        unit = 10.0**-SAME_DEGREES * np.radians(EARTH_RADIUS)
+    else:
+        unit = SAME_SHARE * float(np.ptp(p, axis=0).max(initial=0.0)) or 1.0
+    p = p - p.min(axis=0, initial=np.inf)
+    places = np.round(p / unit).astype(np.int64)
+    _, first, at = np.unique(places, axis=0, return_index=True, return_inverse=True)
     faces = np.full(a.shape, -1, dtype=np.intp)
     faces[present] = at.ravel()
     return a[present][first], b[present][first], _corners_first(faces)

@@ -20,10 +20,13 @@ from flowtex.errors import FieldError, import_extra, import_package
 from flowtex.field import units
 from flowtex.sources.datasets import labels
 from flowtex.sources.datasets.axes import TIMES, Choice, as_slice, is_dates
+from flowtex.sources.datasets.levels import with_levels
 from flowtex.sources.datasets.select import find_pairs
 from flowtex.sources.inspection.inspect_file import NETCDF, inspect_file
 from flowtex.sources.models.conventions import with_mesh_axes
 from flowtex.sources.models.drifters import as_points
+from flowtex.sources.models.image_velocimetry import with_image_units
+from flowtex.sources.models.sgrid import with_declared_axes
 from flowtex.sources.notices import NOTE, Record
 from flowtex.sources.opening import component_axes, flow_text, rasters, tables
 from flowtex.sources.opening.column_values import plain_values
@@ -98,7 +101,7 @@ def as_datasets(data: Any, record: Record | None = None, choice: Choice | None =
             parts = of_tree(ds)
         else:
             parts = [tables.as_dataset(ds, several=several)]
-        for part in parts:
+        for part in map(with_image_units, parts):
             note = part.encoding.get(NOTE)
             if note:
                 record("select", note, notable=True)
@@ -231,7 +234,7 @@ def _decoded(ds: xr.Dataset) -> xr.Dataset:
         warnings.simplefilter("ignore")
         with suppress(ValueError, OverflowError, TypeError):  # times of no calendar
             ds = import_extra("xarray", "xarray").decode_cf(ds, decode_timedelta=False)
-    return _dated(ds)
+    return _dated(with_declared_axes(ds))
 
 
 def _dated(ds: xr.Dataset) -> xr.Dataset:
@@ -293,6 +296,7 @@ def _dates_of(texts: list[str], *, digits: bool = False) -> AnyArray | None:
 
 def _with_axes(ds: xr.Dataset) -> xr.Dataset:
     import_extra("cf_xarray", "xarray")
+    ds = with_levels(ds)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         guessed = ds.cf.guess_coord_axis()

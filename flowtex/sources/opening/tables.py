@@ -27,7 +27,7 @@ from flowtex._util.memory import check_memory
 from flowtex._util.whole_file import TemporaryFolder
 from flowtex.errors import FieldError, import_extra
 from flowtex.sources.datasets import is_dataset
-from flowtex.sources.datasets.coordinates import LATITUDE, LONGITUDE
+from flowtex.sources.datasets.coordinates import LATITUDE, LONGITUDE, OF_POINTS
 from flowtex.sources.models.trajectories import IDENTITIES, TRAJECTORY
 from flowtex.sources.opening import component_axes
 from flowtex.sources.opening.column_names import component_names, split_unit
@@ -37,8 +37,8 @@ from flowtex.sources.reader_errors import check_count
 if TYPE_CHECKING:
     import xarray as xr
 
-ACROSS = re.compile(r"^(x|x[-_ ]?coord\w*|x[-_ ]?pos\w*|easting)$", re.I)
-UPWARD = re.compile(r"^(y|y[-_ ]?coord\w*|y[-_ ]?pos\w*|northing)$", re.I)
+ACROSS = re.compile(rf"^(x|x[-_ ]?coord\w*|x[-_ ]?pos\w*|easting|{OF_POINTS.format('x')})$", re.I)
+UPWARD = re.compile(rf"^(y|y[-_ ]?coord\w*|y[-_ ]?pos\w*|northing|{OF_POINTS.format('y')})$", re.I)
 LEVELS = re.compile(r"^(z|lev\w*|depth|height|altitude|plev|pressure)$", re.I)
 TIMES = re.compile(r"^(t|(valid_?)?(date_?)?time\w*|date)$", re.I)
 #: Names and units of columns in the header of a .vec file.

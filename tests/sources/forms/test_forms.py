@@ -12,6 +12,7 @@ import mesh_forms
 import numpy as np
 import pytest
 import time_forms
+import topology_forms
 import turned_forms
 import value_forms
 from form_table import FORMS, judge, read
@@ -27,6 +28,7 @@ MODULES = (
     label_forms,
     mesh_forms,
     time_forms,
+    topology_forms,
     turned_forms,
     value_forms,
 )

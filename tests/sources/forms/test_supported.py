@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import declared_files
 import direction_files
 import global_files
 import mesh_files
@@ -17,6 +18,7 @@ from supported import ROWS, Supported, drawn
 
 pytest.importorskip("pyproj")
 MODULES = (
+    declared_files,
     direction_files,
     global_files,
     mesh_files,
