@@ -16,7 +16,7 @@ import numpy as np
 from flowtex._util.array_types import Floats
 from flowtex.errors import FieldError, import_extra
 from flowtex.field import units
-from flowtex.field.earth import GLOBE, Projection
+from flowtex.field.earth.projection import GLOBE, Projection
 from flowtex.sources.datasets.axes import COLUMNS, ROWS
 from flowtex.sources.datasets.coordinates import ACROSS, LATITUDE, LONGITUDE, UPWARD
 from flowtex.sources.datasets.levels import LEVELS
