@@ -145,6 +145,6 @@ def _bent_nodes(points: Floats, triangles: Indices) -> Bools:
     bent = uneven_nodes(triangles, len(points))
     for nodes in triangles.T:
         # A triangle that is turned far from the mean at its corner.
-        turned = dot(crosses, normals[nodes]) <= least * size[nodes]
+        turned = dot(crosses, normals.take(nodes, axis=0)) <= least * size.take(nodes)
         bent[nodes[turned]] = True
     return bent

@@ -31,7 +31,7 @@ def solid_triangles(p: Floats, corners: Indices) -> Bools:
     """Return which triangles (M,) have an area."""
     result = np.empty(len(corners), dtype=bool)
     for block in row_blocks(len(corners), 1):
-        a, b, c = (p[nodes] for nodes in corners[block].T)
+        a, b, c = (p.take(nodes, axis=0) for nodes in corners[block].T)
         one = b - a
         two = c - a
         three = c - b
@@ -60,20 +60,37 @@ def nodal_means(
     return map_steps(values, partial(known_means, summed=summed))
 
 
+def incidence(triangles: Indices, count: int, weights: Floats | None = None) -> Any:
+    """Return a sparse matrix (M, count) with weights (M, K), or ones, at the corners of faces.
+
+    Its product with values of nodes sums them at faces, and that of its transpose those of faces
+    at nodes, several times as fast as NumPy does.
+    """
+    if weights is None:
+        weights = np.ones(triangles.size)
+    begins = np.arange(0, triangles.size + 1, triangles.shape[1])
+    entries = np.ravel(weights), np.ravel(triangles), begins
+    return scipy.sparse.csr_array(entries, shape=(len(triangles), count))
+
+
 def sums_at(
-    number: Indices, values: Floats, count: int, of: Any = slice(None), weights: Any = 1.0
+    number: Indices,
+    values: Floats,
+    count: int,
+    of: Indices | None = None,
+    weights: Floats | None = None,
 ) -> Floats:
     """Return sums (count, C), by number (n,), of weighted values (N, C) ``of`` some items (n,)."""
-    columns = (np.bincount(number, weights * column[of], count) for column in values.T)
-    return np.stack([*columns], axis=-1)
+    if of is not None:
+        values = values.take(of, axis=0)
+    return np.asarray(incidence(number[:, None], count, weights).T @ values)
 
 
-def nodal_sums(triangles: Indices, values: Floats, count: int) -> Floats:
-    """Return sums at the nodes, (count, C), of values at triangles, (M, C)."""
-    result = np.zeros((count, values.shape[1]))
-    for nodes in triangles.T:
-        result += sums_at(nodes, values, count)
-    return result
+def nodal_sums(
+    triangles: Indices, values: Floats, count: int, weights: Floats | None = None
+) -> Floats:
+    """Return sums at the nodes, (count, C), of values at triangles, (M, C), maybe weighted."""
+    return np.asarray(incidence(triangles, count, weights).T @ values)
 
 
 def known_means(values: Floats, summed: Callable[[Floats], Floats]) -> Floats:
@@ -222,8 +239,23 @@ def triangle_normals(points: Floats, triangles: Indices) -> Floats:
     """Return the cross product of two sides, (M, 3): the normal, as long as twice the area."""
     result = np.empty((len(triangles), 3), points.dtype)
     for block in row_blocks(len(triangles), 1):
-        a, b, c = (points[corner] for corner in triangles[block].T)
+        a, b, c = (points.take(corner, axis=0) for corner in triangles[block].T)
         result[block] = cross(b - a, c - a)
+    return result
+
+
+def corner_angles(points: Floats, triangles: Indices) -> Floats:
+    """Return the angles at the corners of triangles, (M, 3)."""
+    result = np.empty(triangles.shape)
+    for block in row_blocks(len(triangles), 1):
+        a, b, c = (points.take(corner, axis=0) for corner in triangles[block].T)
+        one = b - a
+        two = c - b
+        three = a - c
+        area = norm(cross(one, two))
+        result[block, 0] = np.arctan2(area, -dot(three, one))
+        result[block, 1] = np.arctan2(area, -dot(one, two))
+        result[block, 2] = np.arctan2(area, -dot(two, three))
     return result
 
 
@@ -231,7 +263,7 @@ def corner_ends(points: Floats, triangles: Indices) -> tuple[Floats, Floats]:
     """Return least and greatest coordinates of the corners of triangles, (M, 3) each."""
     low, high = np.empty((2, len(triangles), points.shape[1]), points.dtype)
     for block in row_blocks(len(triangles), 1):
-        a, b, c = (points[corner] for corner in triangles[block].T)
+        a, b, c = (points.take(corner, axis=0) for corner in triangles[block].T)
         low[block] = np.minimum(np.minimum(a, b), c)
         high[block] = np.maximum(np.maximum(a, b), c)
     return low, high

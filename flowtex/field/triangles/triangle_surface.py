@@ -21,11 +21,12 @@ from flowtex.field.node_surface import IndexVelocity, NodeSurface, to_index_spac
 from flowtex.field.triangles.sharp_edges import split_nodes
 from flowtex.field.triangles.triangle_nodes import (
     SHARP,
+    corner_angles,
     face_alike,
     flipped,
     neighbours,
+    nodal_sums,
     same_places,
-    sums_at,
     triangle_normals,
 )
 
@@ -157,16 +158,11 @@ class TriangleSurface(NodeSurface):
         """Unit normals at the nodes, (1, N, 3): means by the angles of the triangles there."""
         if self._plane_normal is not None:
             return np.tile(self._plane_normal, (1, self.shape[1], 1))
-        length = np.linalg.norm(self.crosses, axis=1, keepdims=True)
+        length = norm(self.crosses)[:, None]
         unit = np.divide(self.crosses, length, out=np.zeros_like(self.crosses), where=length > 0)
-        corners = self.points[0][self.triangles]
-        first = np.roll(corners, -1, axis=1) - corners
-        second = np.roll(corners, 1, axis=1) - corners
-        angle = np.arctan2(length, dot(first, second))
-        at = self.triangles.ravel()
-        cell = np.repeat(np.arange(len(corners)), 3)
-        total = sums_at(at, unit, self.shape[1], cell, angle.ravel())
-        size = np.linalg.norm(total, axis=1, keepdims=True)
+        angles = corner_angles(self.points[0], self.triangles)
+        total = nodal_sums(self.triangles, unit, self.shape[1], angles)
+        size = norm(total)[:, None]
         away = np.divide(total, size, out=np.zeros_like(total), where=size > 1e-12)
         away[size[:, 0] <= 1e-12] = (0.0, 0.0, 1.0)
         return np.asarray(away[None])
@@ -301,9 +297,11 @@ class TriangleSurface(NodeSurface):
         sharp = np.zeros(self.shape[1], dtype=bool)
         if self._plane_normal is not None:
             return sharp[None]
-        length = np.linalg.norm(self.crosses, axis=1)
-        alike = np.einsum("mc,mkc->mk", self.crosses, self.normals[0, self.triangles])
-        sharp[self.triangles[alike < SHARP * length[:, None]]] = True
+        least = SHARP * norm(self.crosses)
+        normals = self.normals[0]
+        for nodes in self.triangles.T:
+            turned = dot(self.crosses, normals.take(nodes, axis=0)) < least
+            sharp[self.triangles[turned]] = True
         return sharp[None]
 
 

@@ -12,6 +12,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import partial
+from typing import Any
 
 import numpy as np
 import scipy
@@ -23,8 +24,8 @@ from flowtex.field import FlowField
 from flowtex.field.steps import Steps, map_steps
 from flowtex.field.triangles.triangle_nodes import (
     connected_parts,
+    incidence,
     known_means,
-    nodal_sums,
     once,
     sums_at,
     triangle_normals,
@@ -98,13 +99,11 @@ class Clusters:
         if not surface.cells.all():
             triangles = triangles[surface.cells]
             crosses = crosses[surface.cells]
-        around = np.repeat(np.arange(len(triangles)), 3)
         places = surface.places
-        joined = places[triangles]
-        normals = sums_at(joined.ravel(), crosses, field.shape[1], around)
+        around = incidence(places[triangles], field.shape[1])
         areas = norm(crosses)
-        sides = _sides(areas, joined, len(normals), surface.extent)[places]
-        binned, normals = _without_noise(field.points[0], joined, normals, areas)
+        sides = _sides(around, areas, surface.extent)[places]
+        binned, normals = _without_noise(around, field.points[0], crosses, areas)
         face = _faces(surface)
         return cls(
             field,
@@ -279,21 +278,21 @@ def _are_opposite(bins: Indices, away: Bools, normals: Floats) -> Bools:
 
 
 def _without_noise(
-    points: Floats, triangles: Indices, normals: Floats, areas: Floats
+    around: Any, points: Floats, crosses: Floats, areas: Floats
 ) -> tuple[Floats, Floats]:
     """Return positions and normals (N, 3); where many triangles are turned, means around.
 
     Noise may be higher than bins, which would cut through it.
     """
-    total = nodal_sums(triangles, areas[:, None], len(points))[:, 0]
+    normals = np.asarray(around.T @ crosses)
+    total = around.T @ areas
     is_rough = norm(normals) < EVEN_SHARE * total
     if np.count_nonzero(is_rough) < ROUGH_SHARE * np.count_nonzero(total):
         return points, normals
-    share = np.maximum(np.bincount(triangles.ravel(), minlength=len(points)), 1)
+    share = np.maximum(around.sum(axis=0), 1)
     values = np.hstack([points, normals])
     for _ in range(SMOOTHING):
-        middle = np.asarray(sum(values[triangles[:, k]] for k in range(3))) / 3
-        means = nodal_sums(triangles, middle, len(points)) / share[:, None]
+        means = (around.T @ (around @ values)) / (3 * share[:, None])
         values = np.where(is_rough[:, None], means, values)
     return values[:, :3], values[:, 3:]
 
@@ -372,14 +371,13 @@ def _averaged(field: FlowField, number: Indices, places: Indices, triangles: Ind
     )
 
 
-def _sides(areas: Floats, triangles: Indices, count: int, extent: float) -> Floats:
+def _sides(around: Any, areas: Floats, extent: float) -> Floats:
     """Return the sides of the first bins, (N,), in proportion to edges; needles are not counted."""
     size = np.sqrt(areas)
-    share = np.bincount(triangles.ravel(), minlength=count)
+    share = around.sum(axis=0)
     for _ in range(SMOOTHING):
-        total = sum(np.bincount(triangles[:, k], size, count) for k in range(3))
-        nodal = np.divide(total, share, out=np.zeros(count), where=share > 0)
-        size = np.asarray(sum(nodal[triangles[:, k]] for k in range(3))) / 3
+        nodal = np.divide(around.T @ size, share, out=np.zeros(len(share)), where=share > 0)
+        size = (around @ nodal) / 3
     # Nodes of cells of about one size must not fall on both sides of a power of two.
     least = extent / MOST_BINS / FIRST_EDGES
     typical = max(float(np.median(nodal[share > 0])), least)
@@ -398,12 +396,10 @@ def _untangled(points: Floats, triangles: Indices, normals: Floats, border: Bool
             break
         changed = np.flatnonzero(np.any([moved[triangles[:, k]] for k in range(3)], axis=0))
         near = triangles[changed]
-        total = np.zeros_like(points)
-        count = np.zeros(len(points))
-        for by in (1, 2):
-            other = points[np.roll(near, by, axis=1).ravel()]
-            total += sums_at(near.ravel(), other, len(points))
-            count += np.bincount(near.ravel(), minlength=len(points))
+        around = incidence(near, len(points))
+        # Of each triangle, the sum of the other two corners.
+        total = around.T @ (around @ points) - around.sum(axis=0)[:, None] * points
+        count = 2 * around.sum(axis=0)
         points[moved] = total[moved] / count[moved, None]
         turned[changed] = _turned(points, near, normals)
     return ~turned
@@ -411,7 +407,7 @@ def _untangled(points: Floats, triangles: Indices, normals: Floats, border: Bool
 
 def _turned(points: Floats, triangles: Indices, normals: Floats) -> Bools:
     """Return which triangles (M,) face away from the normals of their corners."""
-    normal = np.asarray(sum(normals[triangles[:, k]] for k in range(3)))
+    normal = incidence(triangles, len(normals)) @ normals
     return np.asarray(dot(triangle_normals(points, triangles), normal) <= 0)
 
 
