@@ -50,6 +50,8 @@ from flowtex.textures.tiles.shared import shared_pyramid
 
 #: Bytes of the tiles of a large surface, at most; all of a level are in a page, or none.
 TILE_BYTES = 40_000_000
+#: The same where a page has slices, as of triangles, which are ten times as large as velocities.
+SLICE_BYTES = 15_000_000
 #: Endings of the names of modules.
 MODULES = (".mjs", ".js")
 #: Suffixes of pages, modules and scenes.
@@ -231,7 +233,10 @@ def _with_tiles(scene: ClientData) -> ClientData:
     if pyramid is None:
         return scene
     finest = pyramid.depth
-    room = float(TILE_BYTES)
+    if scene.traced:
+        room = float(TILE_BYTES)
+    else:
+        room = float(min(TILE_BYTES, SLICE_BYTES))
     surface = sum(len(part_text(part)[1]) for part in scene.surface().values())
     step = sum(len(part_text(part)[1]) for part in scene.step(0).values())
     root = (surface + scene.steps * step) / math.prod(pyramid.shape(pyramid.depth))

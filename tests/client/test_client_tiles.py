@@ -12,6 +12,7 @@ import pytest
 from matrix import COLOUR, GROUND, ROOT, SHARE, SIZE, TILTED, difference, straight
 from page_reader import Reader
 from pages import COMPLETE
+from triangle_meshes import sphere
 from webgl_page import ClientPage, TileMaker, packed, state, tile_maker
 
 import flowtex
@@ -215,6 +216,21 @@ def test_a_page_without_room_has_no_tiles(monkeypatch: pytest.MonkeyPatch) -> No
     text = page_text([viewed()[0]])
     assert "tile/2/0/0" not in text
     assert Reader(text).header()["pyramid"] is None
+
+
+def triangles_of_ball() -> flowtex.FlowField:
+    """A flow on triangles, which clients do not trace."""
+    points, triangles = sphere(4)
+    return flowtex.FlowField.from_triangles(points, triangles, np.cross(points, [0.3, 0.2, 1.0]))
+
+
+def test_room_for_slices_does_not_limit_velocities(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("flowtex.textures.tiles.triangle_pyramid.ROOT_NODES", 350)
+    view = viewed(triangles_of_ball)[0]
+    assert Reader(page_text([view])).header()["pyramid"] is not None
+    monkeypatch.setattr("flowtex.host.export.SLICE_BYTES", 0)
+    assert Reader(page_text([view])).header()["pyramid"] is None
+    assert Reader(page_text([viewed()[0]])).header()["pyramid"] is not None
 
 
 def test_a_tile_that_fails_fails_the_page(monkeypatch: pytest.MonkeyPatch) -> None:
