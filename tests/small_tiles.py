@@ -11,6 +11,13 @@ import pytest
 
 #: Cells along a side of a block, and of a tile of four times four of them.
 BLOCK_CELLS, TILE_CELLS = 16, 64
+#: These, and bytes of the files of a tile: zeros fill their last chunk, and are packed as well.
+SMALL = {
+    "BLOCK_CELLS": BLOCK_CELLS,
+    "TILE_CELLS": TILE_CELLS,
+    "FILE_CHUNK": 1 << 16,
+    "FILE_BYTES": 1 << 24,
+}
 
 
 def shrink(change: Callable[[Any, str, Any], None] = setattr) -> None:
@@ -24,7 +31,7 @@ def shrink(change: Callable[[Any, str, Any], None] = setattr) -> None:
     del build, stored  # what is not there could not be changed
     change(block_places, "__defaults__", (BLOCK_CELLS,))
     for name, module in list(sys.modules.items()):
-        for constant, value in (("BLOCK_CELLS", BLOCK_CELLS), ("TILE_CELLS", TILE_CELLS)):
+        for constant, value in SMALL.items():
             if name.startswith("flowtex.") and hasattr(module, constant):
                 change(module, constant, value)
 

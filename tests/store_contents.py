@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from flowtex.pyramid.layout import FILE_BYTES, FILE_CHUNK
+from flowtex.pyramid import layout
 
 
 def contents(store: Path) -> dict[str, bytes]:
@@ -20,7 +20,7 @@ def contents(store: Path) -> dict[str, bytes]:
     arrays = {name: array for name, array in members if isinstance(array, zarr.Array)}
     return {
         name: np.asarray(
-            array[..., :FILE_CHUNK] if array.shape[-1] == FILE_BYTES else array[:]
+            array[..., : layout.FILE_CHUNK] if array.shape[-1] == layout.FILE_BYTES else array[:]
         ).tobytes()
         for name, array in arrays.items()
     }

@@ -17,8 +17,7 @@ from flowtex import FlowField
 from flowtex._util.array_types import AnyArray
 from flowtex.field.derived.quantities import steps_of
 from flowtex.host.view import web_views
-from flowtex.pyramid import build
-from flowtex.pyramid.layout import FILE_CHUNK
+from flowtex.pyramid import build, layout
 from flowtex.rendering.webgl.client_data import tile_parts
 from flowtex.scene.options import Options
 from flowtex.textures.tiles.pyramid import Pyramid
@@ -44,7 +43,7 @@ def flat() -> FlowField:
 
 def opened(group: Any, name: str, *at: int) -> dict[str, AnyArray]:
     """Read a file of parts as the client does."""
-    parts = parts_of(group[name][(*at, slice(FILE_CHUNK))].tobytes())
+    parts = parts_of(group[name][(*at, slice(layout.FILE_CHUNK))].tobytes())
     assert parts.pop("of").tobytes().decode() == group.attrs["flowtex"]["fingerprint"]
     return parts
 

@@ -14,8 +14,8 @@ from flowtex import FlowField
 from flowtex._util.array_types import Floats
 from flowtex.errors import FieldError
 from flowtex.field.options import FieldOptions
-from flowtex.pyramid import build, open_store
-from flowtex.pyramid.layout import FILE_CHUNK, sealed
+from flowtex.pyramid import build, layout, open_store
+from flowtex.pyramid.layout import sealed
 from flowtex.pyramid.levels import Levels
 from flowtex.pyramid.places import ChangedError, PyramidError
 from flowtex.pyramid.source import RegionSource, source_of
@@ -117,7 +117,7 @@ def test_a_store_has_the_uncertainty_of_its_source(tmp_path: Path) -> None:
     assert np.ptp(layers[0][..., 3]) > 0.1
     np.testing.assert_allclose(layers[0], layers[1], atol=2e-3)
     # Browsers read it with the flow.
-    file = zarr.open_group(store)["0/flow"][0, 0, 0, :FILE_CHUNK]
+    file = zarr.open_group(store)["0/flow"][0, 0, 0, : layout.FILE_CHUNK]
     assert [info["shape"][-1] for info in file_infos(file.tobytes())[0][1:]] == [5]
     for other, words in (("ssh", "ssh"), (np.ones(data.u.shape), "an array")):
         with pytest.raises(FieldError, match=f"uncertainty is {words}, but .* built with error"):
