@@ -20,6 +20,8 @@ const FEWEST_SAMPLES = 10;
 const LEAST_FACING = 0.05;
 /** Shorter side of a pixel on the surface, over the longer one, that counts at least. */
 const LEAST_ROUND = 0.25;
+/** Width of a streak seen aslant in the picture over the usual one, at least. */
+const LEAST_ACROSS = 0.75;
 /** Samples of a streak seen aslant over the usual number, at most, and the reverse. */
 const MOST_STRETCH = 4;
 /** Change of their number below which it stays the usual one. */
@@ -201,13 +203,14 @@ function indexOf(values: number[], value: number): number {
  * Length of a grain at a point: of the pixel's mean side as it lies on the surface, or of a texel of
  * the step texture's level, which is that of the pixel unless its own texels are larger.
  */
-export function grainAt({ scene, place, position }: PathPlace, settings: Settings, camera: Camera, rows: number) {
+export function grainAt(at: PathPlace, settings: Settings, camera: Camera, rows: number) {
+  const { scene, place, position } = at;
   const { geometry, image } = scene.header;
-  const normal = cross(...sidesAt(scene, place));
   const { height, ray } = camera.at(position);
-  const facing = Math.max(Math.abs(dot(unit(normal), ray)), LEAST_FACING);
   const pixel = (2 * height) / rows;
   if (image) {
+    const normal = cross(...sidesAt(scene, place));
+    const facing = Math.max(Math.abs(dot(unit(normal), ray)), LEAST_FACING);
     const [across, up] = [image.alongI, image.alongJ].map((along, axis) => {
       const n = Math.min(Math.floor(place[axis]), along.length - 2);
       return (along[n + 1] - along[n]) * image.stepSize[axis];
@@ -216,34 +219,43 @@ export function grainAt({ scene, place, position }: PathPlace, settings: Setting
     return settings.lod ? Math.max(pixel / Math.sqrt(facing), texel) : texel;
   }
   const texel = geometry.extent / Number(settings.resolution);
-  // Towards the corners of a view in perspective, pixels cover less across the ray.
-  const aside = dot(ray, camera.at(camera.state.focal_point as Vector).ray);
-  const mean = pixel * Math.sqrt(Math.max(aside, LEAST_ROUND / facing) / facing);
-  const grain = mean * Number(settings.grain);
   if (!settings.lod) return texel;
+  const grain = pixel * footprintAt(at, camera).side * Number(settings.grain);
   return settings.fixed_grain ? Math.max(grain, texel) : grain;
 }
 
 /** How many times as many samples are summed at a point, as shaders/common/lookup_space.glsl has it. */
 export function stretchAt(at: PathPlace, settings: Settings, camera: Camera): number {
-  const { scene, position } = at;
-  const { geometry, image } = scene.header;
-  if (image || !settings.lod || settings.fixed_grain) return 1;
-  const normal = unit(cross(...sidesAt(scene, at.place)));
+  if (at.scene.header.image || !settings.lod || settings.fixed_grain) return 1;
+  const { side, across, area } = footprintAt(at, camera);
+  if (!across) return 1;
+  const stretch = clamp(area / (across * side), 1 / MOST_STRETCH, MOST_STRETCH);
+  return Math.abs(stretch - 1) < LEAST_STRETCH ? 1 : stretch;
+}
+
+/** What a pixel covers of the surface, in pixels of a plane parallel to the picture. */
+interface Footprint {
+  /** Side of the pixel for which grains are made. */
+  side: number;
+  /** How far it extends across the flow. */
+  across: number;
+  area: number;
+}
+
+function footprintAt(at: PathPlace, camera: Camera): Footprint {
+  const { geometry } = at.scene.header;
+  const normal = unit(cross(...sidesAt(at.scene, at.place)));
   const across = unit(cross(normal, fromFrame(geometry.frame, layersAt(at)(0).slice(0, 3))));
-  if (length(across) < 0.5) return 1;
-  const { ray } = camera.at(position);
+  const { ray } = camera.at(at.position);
   const slant = dot(normal, ray);
   const facing = (slant < 0 ? -1 : 1) * Math.max(Math.abs(slant), LEAST_FACING);
-  // What a pixel covers of the surface, in pixels of a plane parallel to the picture.
-  const [dx, dy] = camera.axes.slice(0, 2).map((side) => add(side, ray, -dot(normal, side) / facing));
+  const [dx, dy] = camera.axes.slice(0, 2).map((axis) => add(axis, ray, -dot(normal, axis) / facing));
   const area = length(cross(dx, dy));
   const half = 0.5 * (dot(dx, dx) + dot(dy, dy));
   const longer = Math.sqrt(half + Math.sqrt(Math.max(half ** 2 - area ** 2, 0)));
   const mean = Math.sqrt(longer * Math.max(area / longer, LEAST_ROUND * longer));
-  const side = Math.hypot(dot(dx, across), dot(dy, across));
-  const stretch = clamp(area / (side * mean), 1 / MOST_STRETCH, MOST_STRETCH);
-  return Math.abs(stretch - 1) < LEAST_STRETCH ? 1 : stretch;
+  const aside = Math.hypot(dot(dx, across), dot(dy, across));
+  return { side: Math.max(mean, LEAST_ACROSS * aside), across: aside, area };
 }
 
 /** The first points of a side, up to a length. */

@@ -67,16 +67,31 @@ class EvenBlocks:
         return self.end[0] - self.first[0], self.end[1] - self.first[1]
 
 
-def even_gain(near: Floats, stretch: Floats, values: Values) -> Floats:
+@dataclass(frozen=True, eq=False)
+class DrawnGrains:
+    """Sizes in the picture of grains at N fragments, over those where the surface faces the eye."""
+
+    across: Floats  #: Size across the flow, (N,).
+    along: Floats  #: Size along it, (N,).
+
+    @property
+    def stretch(self) -> Floats:
+        """Return the factor of the number of samples, (N,), so that streaks have equal lengths."""
+        stretch = np.clip(1.0 / self.along, 1.0 / const.MOST_STRETCH, const.MOST_STRETCH)
+        is_usual = np.abs(stretch - 1.0) < const.LEAST_STRETCH
+        return np.where(is_usual, 1.0, stretch)
+
+
+def even_gain(near: Floats, grains: DrawnGrains, values: Values) -> Floats:
     """Return the factor that restores the deviation of a texture less its local mean, (N,).
 
-    The correlation of neighbouring weights and the width of streaks in grains are (N,), too.
+    The correlation of neighbouring weights is (N,), too.
     """
     near = np.clip(near, const.LEAST_NEAR, const.MOST_NEAR)
     samples = -0.5 / np.log(near)
     grain = 0.5 / const.BELL
-    across = grain * stretch**2
-    along = (grain + values["u_spacing"] ** 2 * samples) / stretch**2
+    across = grain * grains.across**2
+    along = (grain + values["u_spacing"] ** 2 * samples) * grains.along**2
     bell = const.EVEN_SIGMA**2
     once = across * along / ((across + bell) * (along + bell))
     twice = across * along / ((across + 2 * bell) * (along + 2 * bell))

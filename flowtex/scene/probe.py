@@ -27,6 +27,7 @@ from flowtex.rendering.cpu.raster import Coverage
 from flowtex.rendering.cpu.render import lookup_maker, slices_at, view_state
 from flowtex.rendering.cpu.shade import tone
 from flowtex.rendering.cpu.texture import Lookup, LookupMaker, Side, Summing, Sums
+from flowtex.rendering.even import DrawnGrains
 from flowtex.rendering.shaders import const
 from flowtex.rendering.uniforms import Values, ViewState, uniforms
 from flowtex.scene.scene import Scene
@@ -224,7 +225,7 @@ class _Pixel:
         first_slice, shares = bracket(knots, np.abs(lags), side="left")
         certainty = self._summing.certainty(self._fragments.place, self._level)
         faded = self._summing.faded(self._fragments.place, self._level, certainty)
-        count = self._summing.count(self._base, certainty)
+        count = self._summing.count(recorder.face(self._base[:, :3]), certainty)
         cell = self._summing.cell(self._fragments.place, count)
         in_cell = cell is not None and cell.share[0] > 0
         path_lags, path = (lags, points) if in_cell else self._path(sides, knots, lags)
@@ -372,9 +373,12 @@ class Recorder(Lookup):
         """Pass on to the inner look-up."""
         self.inner.move(slope, speed)
 
-    def stretch(self, tangent: Floats) -> Floats:
+    def face(self, tangent: Floats) -> DrawnGrains:
         """Pass on to the inner look-up."""
-        return self.inner.stretch(tangent)
+        grains = self.inner.face(tangent)
+        self.spacing = self.inner.spacing
+        self.level = self.inner.level
+        return grains
 
     def lookup(self, displacement: Floats, length: Floats) -> Floats:
         """Record the arguments and the value, and return the number of the sample as a row."""

@@ -21,7 +21,8 @@ vec2 flowtexValueAt(FlowtexPlace place)
   dx = flowtexOnSurface(dx, place.position, place.normal);
   dy = flowtexOnSurface(dy, place.position, place.normal);
 #endif
-  return flowtexFragment(place.position, dx, dy, place.coordinate, flowtexSliceLevel(place.byX, place.byY));
+  vec2 value = flowtexFragment(place.position, dx, dy, place.coordinate, flowtexSliceLevel(place.byX, place.byY));
+  return vec2(value.x, value.y * place.rim);
 }
 
 #ifndef FLOWTEX_DEFERRED

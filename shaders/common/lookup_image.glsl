@@ -52,5 +52,5 @@ vec2 flowtexFragment(vec2 coordinate, vec2 at, vec2 dx, vec2 dy, float sliceLeve
   float width = u_lod ? max(texels, least) : least;
   float step_ = textureLod(u_stepImage, vec3(at, 0.0), flowtexMip(texels)).r * width;
   vec4 base = flowtexLayer(coordinate, 0, sliceLevel);
-  return flowtexTexture(coordinate, sliceLevel, base, step_ * u_spacing, 1.0);
+  return flowtexTexture(coordinate, sliceLevel, base, step_ * u_spacing, 1.0, vec2(1.0));
 }

@@ -54,19 +54,11 @@ void flowtexMove(float slope, float speed)
   flowtexMotion.shares = shares * (FLOWTEX_MOST_GRAIN * inversesqrt(dot(shares, shares)));
 }
 
-// How many times as long a streak must be on the surface to be as long in the picture as where the
-// surface faces the eye.
-float flowtexStretch(vec3 dx, vec3 dy, vec2 footprint, vec3 tangent)
+// How far a pixel extends on the surface across the flow; zero where it has no direction.
+float flowtexAcross(vec3 dx, vec3 dy, vec3 tangent)
 {
-  if (!u_lod || u_fixed)
-    return 1.0;
   vec3 across = flowtexUnit(cross(flowtexUnit(cross(dx, dy)), tangent));
-  // How far the pixel extends across the flow.
-  float side = length(vec2(dot(dx, across), dot(dy, across)));
-  float stretch = footprint.x * footprint.y / max(side * flowtexPixel, FLOWTEX_LEAST_SQUARE);
-  stretch = clamp(stretch, 1.0 / FLOWTEX_MOST_STRETCH, FLOWTEX_MOST_STRETCH);
-  bool isUsual = abs(stretch - 1.0) < FLOWTEX_LEAST_STRETCH || dot(across, across) < 0.5;
-  return isUsual ? 1.0 : stretch;
+  return length(vec2(dot(dx, across), dot(dy, across)));
 }
 
 // Texture and factor at a position with the footprint given by its derivatives.
@@ -76,8 +68,19 @@ vec2 flowtexFragment(vec3 position, vec3 dx, vec3 dy, vec2 coordinate, float sli
   vec2 footprint = flowtexFootprint(dx, dy);
   // The mean of both sides, as the longer one alone would draw grains out where it is far longer.
   float side = sqrt(footprint.x * max(footprint.y, FLOWTEX_LEAST_ROUND * footprint.x));
-  flowtexPixel = u_lod ? side : u_texel / u_grain;
-  float stretch = flowtexStretch(dx, dy, footprint, base.xyz);
+  float across = flowtexAcross(dx, dy, base.xyz);
+  // Streaks along an outline would be finer than pixels.
+  flowtexPixel = u_lod ? max(side, FLOWTEX_LEAST_ACROSS * across) : u_texel / u_grain;
+  vec2 drawn = vec2(1.0);
+  float stretch = 1.0;
+  if (u_lod && !u_fixed && across > 0.0)
+  {
+    drawn = vec2(flowtexPixel / across, flowtexPixel * across / (footprint.x * footprint.y));
+    // A streak is as long in the picture as where the surface faces the eye.
+    stretch = clamp(1.0 / drawn.y, 1.0 / FLOWTEX_MOST_STRETCH, FLOWTEX_MOST_STRETCH);
+    if (abs(stretch - 1.0) < FLOWTEX_LEAST_STRETCH)
+      stretch = 1.0;
+  }
   float grain = u_fixed ? max(flowtexPixel * u_grain, u_texel) : flowtexPixel * u_grain;
   flowtexNoiseLevel = log2(grain / u_texel);
   float level = clamp(2.0 * log2(grain / u_noiseFinest), 0.0, FLOWTEX_LAST_OCTAVE);
@@ -92,5 +95,5 @@ vec2 flowtexFragment(vec3 position, vec3 dx, vec3 dy, vec2 coordinate, float sli
   flowtexFineBeyond = flowtexLattice(position - u_noiseOrigin, octave, turn);
   flowtexCoarseBeyond = flowtexLattice(position - u_noiseOrigin, octave + 1, turn);
 #endif
-  return flowtexTexture(coordinate, sliceLevel, base, u_spacing * grain, stretch);
+  return flowtexTexture(coordinate, sliceLevel, base, u_spacing * grain, stretch, drawn);
 }

@@ -9,6 +9,7 @@ struct FlowtexPlace
   vec2 coordinate;
   vec3 position;
   vec3 normal;
+  float rim; // factor of the texture, less at the outline of a smooth surface
   vec3 dx; // of the position
   vec3 dy;
   vec2 byX; // of the coordinate
@@ -24,19 +25,18 @@ mat3 flowtexCorners(int layer)
               texelFetch(u_nodes, ivec3(flowtexNodes[2], layer), 0).xyz - near, near);
 }
 
-// Normal between the corners; at sharp edges that of the triangle, as in flowtex/field/triangles/triangle_nodes.py.
-vec3 flowtexNormalAt(vec3 across, vec2 coordinate)
+// Normals as the positions above; at sharp edges that of the triangle, as in flowtex/field/triangles/triangle_nodes.py.
+mat3 flowtexNormals(vec3 across)
 {
-  vec3 shares = flowtexShares(coordinate);
   vec3 face = flowtexUnit(across);
-  vec3 normal = vec3(0.0);
+  mat3 normals;
   for (int k = 0; k < 3; ++k)
   {
     vec3 corner = texelFetch(u_nodes, ivec3(flowtexNodes[k], FLOWTEX_NORMALS), 0).xyz;
     float alike = dot(face, corner);
-    normal += shares[k] * (abs(alike) < FLOWTEX_SHARP ? (alike < 0.0 ? -face : face) : corner);
+    normals[k] = abs(alike) < FLOWTEX_SHARP ? (alike < 0.0 ? -face : face) : corner;
   }
-  return normal;
+  return mat3(normals[1] - normals[0], normals[2] - normals[0], normals[0]);
 }
 #else
 mat3 flowtexCorners(ivec2 cell, bool lower, int layer)
@@ -101,10 +101,21 @@ FlowtexPlace flowtexPlaceOn(vec3 point, vec3 byX, vec3 byY, vec2 coordinate)
   }
 #ifdef FLOWTEX_PLANAR
   place.normal = vec3(0.0, 0.0, 1.0);
-#elif defined(FLOWTEX_TRIANGLES)
-  place.normal = flowtexNormalAt(across, place.coordinate);
+  place.rim = 1.0;
 #else
-  place.normal = flowtexCorners(cell, lower, FLOWTEX_NORMALS) * vec3(found ? part + cells[0] : part, 1.0);
+#ifdef FLOWTEX_TRIANGLES
+  mat3 normals = flowtexNormals(across);
+#else
+  mat3 normals = flowtexCorners(cell, lower, FLOWTEX_NORMALS);
+#endif
+  place.normal = normals * vec3(found ? part + cells[0] : part, 1.0);
+  // The square of how a curved surface faces the eye grows evenly from its outline.
+  vec2 change = ray * mat2x3(normals * vec3(place.byX * scale, 0.0), normals * vec3(place.byY * scale, 0.0));
+  float aslant = abs(dot(place.normal, ray));
+  float inwards = 0.5 * aslant / max(length(change), FLOWTEX_LEAST_SQUARE);
+  float cosine = aslant / (length(place.normal) * length(ray));
+  place.rim = max(smoothstep(FLOWTEX_RIM_HIDDEN, FLOWTEX_RIM_SHOWN, inwards),
+                  smoothstep(FLOWTEX_RIM_ASLANT, FLOWTEX_RIM_FACING, cosine));
 #endif
   return place;
 }

@@ -212,9 +212,10 @@ void flowtexSides(inout FlowtexSums sums, vec2 coordinate, float level, vec3 slo
 
 // Texture of a fragment, of zero mean and about unit variance, and the factor by which it is shown once its
 // local mean is subtracted: the contrast that this takes, and less where it fades. ``spacing`` is that of the points
-// in nominal length, or in units of lag for an image; ``stretch`` times as many as usual are summed.
+// in nominal length, or in units of lag for an image; ``stretch`` times as many as usual are summed. ``drawn`` is
+// the size of a grain in the picture, across the flow and along it, over the usual one.
 // ``base`` is layer 0 at the fragment.
-vec2 flowtexTexture(vec2 coordinate, float sliceLevel, vec4 base, float spacing, float stretch)
+vec2 flowtexTexture(vec2 coordinate, float sliceLevel, vec4 base, float spacing, float stretch, vec2 drawn)
 {
   FlowtexSums sums = FlowtexSums(vec2(0.0), 0.0, 0.0);
   float speed = length(base.xyz);
@@ -257,7 +258,7 @@ vec2 flowtexTexture(vec2 coordinate, float sliceLevel, vec4 base, float spacing,
 #else
   float near = sums.neighbours / sums.squares;
   float value = flowtexBlend(sums.noise * inversesqrt(sums.squares), near);
-  float share = u_even ? flowtexEvenGain(near, stretch) : 1.0;
+  float share = u_even ? flowtexEvenGain(near, drawn) : 1.0;
 #ifdef FLOWTEX_UNCERTAIN
   share *= mix(FLOWTEX_FADED, 1.0, known);
 #endif

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from contextlib import closing
 from typing import Any
 
@@ -9,7 +10,7 @@ import numpy as np
 import pytest
 import pyvista as pv
 from flows import gyre
-from scipy.ndimage import distance_transform_edt, gaussian_filter
+from scipy.ndimage import distance_transform_edt, gaussian_filter, uniform_filter
 
 import flowtex
 from flowtex._util.array_types import Bools, Floats
@@ -95,6 +96,79 @@ def test_picture_of_a_body_is_even_up_to_its_outline() -> None:
     for least, most in ((1, 3), (3, 6), (6, 10)):
         band = (inwards > least) & (inwards <= most)
         assert grey[band].std() == pytest.approx(inside, rel=0.15)
+
+
+def covered(flow: Any, **options: Any) -> tuple[Floats, Bools]:
+    """Draw a flow, and return which pixels it covers wholly."""
+    light = grey_of(flow, background="white", **options)
+    dark = grey_of(flow, background="black", **options)
+    return light, (np.abs(light - dark) < 1.5) & (light < 250)
+
+
+def apart(grey: Floats, seen: Bools) -> Floats:
+    """Return how far each pixel is from the mean of its neighbours that are seen."""
+    count = 9.0 * uniform_filter(seen.astype(float), 3) - seen
+    total = 9.0 * uniform_filter(np.where(seen, grey, 0.0), 3) - np.where(seen, grey, 0.0)
+    return grey - total / np.maximum(count, 1.0)
+
+
+def doughnut() -> pv.StructuredGrid:
+    """Return a torus with a flow around its axis and through its hole."""
+    around, across = np.meshgrid(np.linspace(0, 2 * np.pi, 121), np.linspace(0, 2 * np.pi, 61))
+    radius = 1.0 + 0.5 * np.cos(across)
+    x = radius * np.cos(around)
+    y = radius * np.sin(around)
+    mesh = pv.StructuredGrid(x, y, 0.5 * np.sin(across))
+    ahead = np.stack([-np.sin(around), np.cos(around), 0 * around], axis=-1)
+    up = [-np.sin(across) * np.cos(around), -np.sin(across) * np.sin(around), np.cos(across)]
+    velocity = ahead + 0.4 * np.sin(3 * x)[..., None] * np.stack(up, axis=-1)
+    mesh["velocity"] = velocity.reshape(-1, 3, order="F")
+    return mesh
+
+
+@pytest.mark.usefixtures("opengl")
+@pytest.mark.parametrize("body", [ball, doughnut])
+def test_outline_of_a_body_has_no_dots(body: Callable[[], Any]) -> None:
+    grey, seen = covered(body(), size=(480, 480))
+    inwards = distance_transform_edt(np.pad(seen, 1))[1:-1, 1:-1]
+    noise = apart(grey, seen)
+    outermost = noise[(inwards > 0) & (inwards < 1.5)].std()
+    # With dots it is 1.6 to 2.0 times as large.
+    assert outermost < 1.5 * noise[inwards > 20].std()
+
+
+def slanted(degrees: float) -> Any:
+    """Return a plane that is seen at an angle, with a flow across the view."""
+    mesh: Any = pv.Plane(i_size=4.0, j_size=4.0, i_resolution=20, j_resolution=20)
+    mesh["velocity"] = np.tile([1.0, 0.0, 0.0], (mesh.n_points, 1))
+    plotter: Any = pv.Plotter(off_screen=True, window_size=[320, 160])
+    plotter.disable_anti_aliasing()
+    plotter.flowtex.add(mesh, scalars=False, show_scalar_bar=False, lighting=False)
+    height = np.sin(np.radians(degrees))
+    plotter.camera_position = [
+        (0, -10 * np.cos(np.radians(degrees)), 10 * height),
+        (0, 0, 0),
+        (0, 0, 1),
+    ]
+    plotter.enable_parallel_projection()
+    # The plane fills the picture.
+    plotter.camera.parallel_scale = 0.9 * min(2.0 * height, 1.0)
+    with closing(plotter):
+        return shown(plotter)[..., 0]
+
+
+@pytest.mark.usefixtures("opengl")
+@pytest.mark.parametrize("degrees", [30.0, 12.0])
+def test_streaks_across_the_view_are_as_wide_and_even_where_seen_aslant(degrees: float) -> None:
+    facing = slanted(90.0)
+    aslant = slanted(degrees)
+    assert aslant.std() == pytest.approx(facing.std(), rel=0.06)
+
+    def alike(grey: Floats) -> float:
+        return float(np.corrcoef(grey[1:].ravel(), grey[:-1].ravel())[0, 1])
+
+    # Streaks of half the width have neighbours that are nearly independent (0.42 less).
+    assert alike(aslant) > alike(facing) - 0.18
 
 
 @pytest.mark.usefixtures("opengl")

@@ -731,8 +731,8 @@ abs(degrees).toFixed(decimals)}° ${degrees<0?before:after}`;return`${told(lon,"
 start,dates,step},times2,time){if(start===null){if(!dates.length)return null;let apart=times2.map(each=>Math.abs(each-time));
 return dates[apart.indexOf(Math.min(...apart))]}let first=Date.parse(`${start}Z`),isMidnight=first%(1e3*DAY_S)===0,text=new Date(
 first+1e3*time).toISOString();return isMidnight&&step%DAY_S===0&&time%DAY_S===0?text.slice(0,10):text.slice(0,step>=60?16:
-19).replace("T"," ")}var SPEED_LAYER=2,POINTS_BETWEEN_SLICES=8,PATH_LENGTH=4,FEWEST_SAMPLES=10,LEAST_FACING=.05,LEAST_ROUND=.25,MOST_STRETCH=4,
-LEAST_STRETCH=.01,LEAST_SLOPE=1e-6,SMALL=.001;function texelsAt({scene,place},[di,dj]){let{rows,columns,triangles}=scene.
+19).replace("T"," ")}var SPEED_LAYER=2,POINTS_BETWEEN_SLICES=8,PATH_LENGTH=4,FEWEST_SAMPLES=10,LEAST_FACING=.05,LEAST_ROUND=.25,LEAST_ACROSS=.75,
+MOST_STRETCH=4,LEAST_STRETCH=.01,LEAST_SLOPE=1e-6,SMALL=.001;function texelsAt({scene,place},[di,dj]){let{rows,columns,triangles}=scene.
 header.geometry;if(triangles){let more=[-di-dj,di,dj];return scene.cornersAt(place).map(([node,share],n)=>[node,share+more[n]])}
 let[x,y]=[place[0]+di+columns.before,place[1]+dj+rows.before],[left,low]=[Math.floor(x),Math.floor(y)],[s,t]=[x-left,y-low];
 return[(1-s)*(1-t),s*(1-t),(1-s)*t,s*t].map((share,n)=>{let column=clamp(left+(n&1),0,columns.size-1);return[clamp(low+(n>>
@@ -762,37 +762,37 @@ second),wayAt=beside=>unit(fromFrame(scene.header.geometry.frame,layersAt(at,bes
 normal,wayAt([0,0]))),by=half/dot2(normal,normal),[di,dj]=[cross2(second,normal),cross2(normal,first)].map(side=>by*dot2(
 across,side));return .5*dot2(across,subtract2(wayAt([di,dj]),wayAt([-di,-dj])))}function between(values,at){let n=Math.min(
 Math.floor(at),values.length-2);return values[n]+(at-n)*(values[n+1]-values[n])}function indexOf(values,value){let n=values.
-findIndex(other=>other>=value);return n<0||value<values[0]?NaN:n===0?0:n-1+(value-values[n-1])/(values[n]-values[n-1])}function grainAt({
-scene,place,position},settings,camera,rows){let{geometry,image}=scene.header,normal=cross2(...sidesAt(scene,place)),{height,
-ray}=camera.at(position),facing=Math.max(Math.abs(dot2(unit(normal),ray)),LEAST_FACING),pixel=2*height/rows;if(image){let[
-across,up]=[image.alongI,image.alongJ].map((along2,axis)=>{let n=Math.min(Math.floor(place[axis]),along2.length-2);return(along2[n+
-1]-along2[n])*image.stepSize[axis]}),texel2=Math.sqrt(length2(normal)/(across*up));return settings.lod?Math.max(pixel/Math.
-sqrt(facing),texel2):texel2}let texel=geometry.extent/Number(settings.resolution),aside=dot2(ray,camera.at(camera.state.
-focal_point).ray),grain=pixel*Math.sqrt(Math.max(aside,LEAST_ROUND/facing)/facing)*Number(settings.grain);return settings.
-lod?settings.fixed_grain?Math.max(grain,texel):grain:texel}function stretchAt(at,settings,camera){let{scene,position}=at,
-{geometry,image}=scene.header;if(image||!settings.lod||settings.fixed_grain)return 1;let normal=unit(cross2(...sidesAt(scene,
-at.place))),across=unit(cross2(normal,fromFrame(geometry.frame,layersAt(at)(0).slice(0,3))));if(length2(across)<.5)return 1;
-let{ray}=camera.at(position),slant=dot2(normal,ray),facing=(slant<0?-1:1)*Math.max(Math.abs(slant),LEAST_FACING),[dx,dy]=camera.
-axes.slice(0,2).map(side2=>add(side2,ray,-dot2(normal,side2)/facing)),area=length2(cross2(dx,dy)),half=.5*(dot2(dx,dx)+dot2(
-dy,dy)),longer=Math.sqrt(half+Math.sqrt(Math.max(half**2-area**2,0))),mean=Math.sqrt(longer*Math.max(area/longer,LEAST_ROUND*
-longer)),side=Math.hypot(dot2(dx,across),dot2(dy,across)),stretch=clamp(area/(side*mean),1/MOST_STRETCH,MOST_STRETCH);return Math.
-abs(stretch-1)<LEAST_STRETCH?1:stretch}function upTo(start,side,most){let result2=[],[from,left]=[start,most];for(let point of side){
-let step=length2(subtract2(point,from));if(step>=left){left>0&&result2.push(add(from,subtract2(point,from),left/(step||1)));
-break}result2.push(point),left-=step,from=point}return result2}function stepsAround([before,after,late]){return before===
-after?[[[before,before,0],1]]:[[[before,before,0],1-late],[[after,after,0],late]]}function velocityAt(at){let velocity=[
-0,0,0];for(let[moment,share]of stepsAround(at.moment))share&&(velocity=add(velocity,velocityAtStep({...at,moment}),share));
-return velocity}function velocityAtStep(at){let{scene,position}=at,{slices,image,speed}=scene.header,layers=layersAt(at),
-[x,y,z]=layers(0),slope=[x,y,z],small=scale2(slope,SMALL*(image?1/image.stepSize[0]:slices.cell)/(length2(slope)||1)),along2=length2(
-slope)>LEAST_SLOPE?subtract2(mover(at)(small)??position,position):slope;return scale2(unit(along2),layers(SPEED_LAYER)[3]*
-speed.typical)}function pathThrough(at,settings,camera,rows){let{scene,position}=at,{slices,image}=scene.header,layers=layersAt(
-at),directed=!isSignFree(scene.header),base=layers(0),slope=[base[0],base[1],base[2]],moved=mover(at),whole=[],sides=settings.
-two_sided||!directed?slices.sides:1;for(let side=0;side<sides&&length2(slope)>LEAST_SLOPE;side+=1){let by=image?1:base[3]*
-slices.unit,points=sideOf(layers,slices.lags,side*slices.lags.length,side?1:-1,by).map(moved),end=points.findIndex(point=>point===
-null);whole.push(points.slice(0,end<0?void 0:end))}let set=Number(settings.samples),samples=isMoving(scene.header,settings,
-!0)?2*set-1:set,count2=(sides===2?Math.floor(samples/2):samples-1)*stretchAt(at,settings,camera),step=Number(settings.spacing)*
-grainAt(at,settings,camera,rows),joined=reach=>{let[back=[],ahead=[]]=whole.map(side=>upTo(position,side,reach));return[
-...back.reverse(),position,...ahead]};return{path:joined(PATH_LENGTH*Math.max(count2,FEWEST_SAMPLES)*step),sampled:joined(
-count2*step),directed,velocity:velocityAt(at)}}var MOST_CELLS=8,ROUNDING2=1e-6,SKEW=.001,POLE_LATITUDE=89.99,turned=lon=>lon-360*Math.round(lon/360);function cornersOf2([
+findIndex(other=>other>=value);return n<0||value<values[0]?NaN:n===0?0:n-1+(value-values[n-1])/(values[n]-values[n-1])}function grainAt(at,settings,camera,rows){
+let{scene,place,position}=at,{geometry,image}=scene.header,{height,ray}=camera.at(position),pixel=2*height/rows;if(image){
+let normal=cross2(...sidesAt(scene,place)),facing=Math.max(Math.abs(dot2(unit(normal),ray)),LEAST_FACING),[across,up]=[image.
+alongI,image.alongJ].map((along2,axis)=>{let n=Math.min(Math.floor(place[axis]),along2.length-2);return(along2[n+1]-along2[n])*
+image.stepSize[axis]}),texel2=Math.sqrt(length2(normal)/(across*up));return settings.lod?Math.max(pixel/Math.sqrt(facing),
+texel2):texel2}let texel=geometry.extent/Number(settings.resolution);if(!settings.lod)return texel;let grain=pixel*footprintAt(
+at,camera).side*Number(settings.grain);return settings.fixed_grain?Math.max(grain,texel):grain}function stretchAt(at,settings,camera){
+if(at.scene.header.image||!settings.lod||settings.fixed_grain)return 1;let{side,across,area}=footprintAt(at,camera);if(!across)
+return 1;let stretch=clamp(area/(across*side),1/MOST_STRETCH,MOST_STRETCH);return Math.abs(stretch-1)<LEAST_STRETCH?1:stretch}
+function footprintAt(at,camera){let{geometry}=at.scene.header,normal=unit(cross2(...sidesAt(at.scene,at.place))),across=unit(
+cross2(normal,fromFrame(geometry.frame,layersAt(at)(0).slice(0,3)))),{ray}=camera.at(at.position),slant=dot2(normal,ray),
+facing=(slant<0?-1:1)*Math.max(Math.abs(slant),LEAST_FACING),[dx,dy]=camera.axes.slice(0,2).map(axis=>add(axis,ray,-dot2(
+normal,axis)/facing)),area=length2(cross2(dx,dy)),half=.5*(dot2(dx,dx)+dot2(dy,dy)),longer=Math.sqrt(half+Math.sqrt(Math.
+max(half**2-area**2,0))),mean=Math.sqrt(longer*Math.max(area/longer,LEAST_ROUND*longer)),aside=Math.hypot(dot2(dx,across),
+dot2(dy,across));return{side:Math.max(mean,LEAST_ACROSS*aside),across:aside,area}}function upTo(start,side,most){let result2=[],
+[from,left]=[start,most];for(let point of side){let step=length2(subtract2(point,from));if(step>=left){left>0&&result2.push(
+add(from,subtract2(point,from),left/(step||1)));break}result2.push(point),left-=step,from=point}return result2}function stepsAround([
+before,after,late]){return before===after?[[[before,before,0],1]]:[[[before,before,0],1-late],[[after,after,0],late]]}function velocityAt(at){
+let velocity=[0,0,0];for(let[moment,share]of stepsAround(at.moment))share&&(velocity=add(velocity,velocityAtStep({...at,
+moment}),share));return velocity}function velocityAtStep(at){let{scene,position}=at,{slices,image,speed}=scene.header,layers=layersAt(
+at),[x,y,z]=layers(0),slope=[x,y,z],small=scale2(slope,SMALL*(image?1/image.stepSize[0]:slices.cell)/(length2(slope)||1)),
+along2=length2(slope)>LEAST_SLOPE?subtract2(mover(at)(small)??position,position):slope;return scale2(unit(along2),layers(
+SPEED_LAYER)[3]*speed.typical)}function pathThrough(at,settings,camera,rows){let{scene,position}=at,{slices,image}=scene.
+header,layers=layersAt(at),directed=!isSignFree(scene.header),base=layers(0),slope=[base[0],base[1],base[2]],moved=mover(
+at),whole=[],sides=settings.two_sided||!directed?slices.sides:1;for(let side=0;side<sides&&length2(slope)>LEAST_SLOPE;side+=
+1){let by=image?1:base[3]*slices.unit,points=sideOf(layers,slices.lags,side*slices.lags.length,side?1:-1,by).map(moved),
+end=points.findIndex(point=>point===null);whole.push(points.slice(0,end<0?void 0:end))}let set=Number(settings.samples),
+samples=isMoving(scene.header,settings,!0)?2*set-1:set,count2=(sides===2?Math.floor(samples/2):samples-1)*stretchAt(at,settings,
+camera),step=Number(settings.spacing)*grainAt(at,settings,camera,rows),joined=reach=>{let[back=[],ahead=[]]=whole.map(side=>upTo(
+position,side,reach));return[...back.reverse(),position,...ahead]};return{path:joined(PATH_LENGTH*Math.max(count2,FEWEST_SAMPLES)*
+step),sampled:joined(count2*step),directed,velocity:velocityAt(at)}}var MOST_CELLS=8,ROUNDING2=1e-6,SKEW=.001,POLE_LATITUDE=89.99,turned=lon=>lon-360*Math.round(lon/360);function cornersOf2([
 i,j]){return[[i,j],[i+1,j],[i,j+1],[i+1,j+1]]}function cellOf({header},place){return place.map((at,axis)=>clamp(Math.floor(
 at),0,header.geometry.shape[1-axis]-2))}var sharesOf=([s,t])=>[(1-s)*(1-t),s*(1-t),(1-s)*t,s*t];function sharesIn(scene,cell,[
 lon,lat],places){let{earth}=scene.header,known=cornersOf2(cell).map(node=>earth&&lonLatOf(earth,nodeAt(scene,node),places));

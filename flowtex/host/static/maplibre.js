@@ -69,7 +69,7 @@ r);return new Response(new Blob([t]).stream().pipeThrough(new DecompressionStrea
 1].slice(-2),l=new Qr[o](s);for(let u=0,m=0;u<c;u+=1)for(let p=u;p<s;p+=c,m+=1){let f=0;for(let d=0;d<o;d+=1)f|=e[d*s+m]<<
 8*d;l[p]=f>>>1^-(f&1)}let h=i*c;for(let u=0;u<r[0];u+=1)for(let m=h;m<s;m+=1)l[m]+=l[m-h];for(let u=0;u<r[1];u+=1)for(let m=0;m<
 s;m+=h)for(let p=m+c;p<m+h;p+=1)l[p]+=l[p-c];return tn(a,n?Ja(l,n.map(u=>2**u)):l)}function Ja(a,e){let t=e.length;return a instanceof
-Uint16Array?a.map((r,n)=>Jr((r<<16>>16)*e[n%t])):new Float32Array(new Float64Array(a).map((r,n)=>(r|0)*e[n%t]))}var dr=1e-6,tt=typeof Float32Array<"u"?Float32Array:Array;var sl=Math.PI/180,al=180/Math.PI;function on(a,e){if(a===e){var t=e[1],r=e[2],n=e[5];a[1]=e[3],a[2]=e[6],a[3]=t,a[5]=e[7],a[6]=r,a[7]=n}else a[0]=e[0],a[1]=
+Uint16Array?a.map((r,n)=>Jr((r<<16>>16)*e[n%t])):new Float32Array(new Float64Array(a).map((r,n)=>(r|0)*e[n%t]))}var dr=1e-6,tt=typeof Float32Array<"u"?Float32Array:Array;var ol=Math.PI/180,il=180/Math.PI;function on(a,e){if(a===e){var t=e[1],r=e[2],n=e[5];a[1]=e[3],a[2]=e[6],a[3]=t,a[5]=e[7],a[6]=r,a[7]=n}else a[0]=e[0],a[1]=
 e[3],a[2]=e[6],a[3]=e[1],a[4]=e[4],a[5]=e[7],a[6]=e[2],a[7]=e[5],a[8]=e[8];return a}function cn(a,e,t){var r=t[0],n=t[1],s=t[2],o=Math.sqrt(r*r+n*n+s*s),i,c,l;return o<dr?null:(o=1/o,r*=o,n*=o,s*=o,i=Math.
 sin(e),c=Math.cos(e),l=1-c,a[0]=r*r*l+c,a[1]=n*r*l+s*i,a[2]=s*r*l-n*i,a[3]=0,a[4]=r*n*l-s*i,a[5]=n*n*l+c,a[6]=s*n*l+r*i,
 a[7]=0,a[8]=r*s*l+n*i,a[9]=n*s*l-r*i,a[10]=s*s*l+c,a[11]=0,a[12]=0,a[13]=0,a[14]=0,a[15]=1,a)}function eo(){var a=new tt(3);return tt!=Float32Array&&(a[0]=0,a[1]=0,a[2]=0),a}function ln(a){var e=a[0],t=a[1],r=a[2];return Math.sqrt(e*e+t*t+r*r)}function hn(a,e,t){return a[0]=e[0]-t[0],a[1]=e[1]-t[1],a[2]=e[2]-t[2],a}function un(a,e,t){return a[0]=e[0]*t,a[1]=e[1]*t,a[2]=e[2]*t,a}function mn(a,e,t,r){return a[0]=e[0]+t[0]*r,a[1]=e[1]+t[1]*
@@ -77,9 +77,9 @@ r,a[2]=e[2]+t[2]*r,a}function pn(a,e){var t=e[0],r=e[1],n=e[2],s=t*t+r*r+n*n;ret
 s,a}function fn(a,e){return a[0]*e[0]+a[1]*e[1]+a[2]*e[2]}function dn(a,e,t){var r=e[0],n=e[1],s=e[2],o=t[0],i=t[1],c=t[2];
 return a[0]=n*c-s*i,a[1]=s*o-r*c,a[2]=r*i-n*o,a}function bn(a,e,t){var r=e[0],n=e[1],s=e[2],o=t[3]*r+t[7]*n+t[11]*s+t[15];return o=o||1,a[0]=(t[0]*r+t[4]*n+t[8]*s+t[12])/
 o,a[1]=(t[1]*r+t[5]*n+t[9]*s+t[13])/o,a[2]=(t[2]*r+t[6]*n+t[10]*s+t[14])/o,a}function br(a,e,t){var r=e[0],n=e[1],s=e[2];
-return a[0]=r*t[0]+n*t[3]+s*t[6],a[1]=r*t[1]+n*t[4]+s*t[7],a[2]=r*t[2]+n*t[5]+s*t[8],a}var cl=(function(){var a=eo();return function(e,t,r,n,s,o){var i,c;for(t||(t=3),r||(r=0),n?c=Math.min(n*t+r,e.length):c=
-e.length,i=r;i<c;i+=t)a[0]=e[i],a[1]=e[i+1],a[2]=e[i+2],s(a,a,o),e[i]=a[0],e[i+1]=a[1],e[i+2]=a[2];return e}})();var W=a=>a,re=()=>[0,0,0],gn=a=>new Array(a).fill(0),A=(a,e)=>fn(W(a),W(e)),O=a=>ln(W(a)),E=(a,e)=>hn(re(),W(a),W(e)),k=(a,e)=>un(
-re(),W(a),e),N=(a,e)=>dn(re(),W(a),W(e)),C=a=>pn(re(),W(a)),T=(a,e,t=1)=>mn(re(),W(a),W(e),t);function rt(a,e,t){let r=cn(
+return a[0]=r*t[0]+n*t[3]+s*t[6],a[1]=r*t[1]+n*t[4]+s*t[7],a[2]=r*t[2]+n*t[5]+s*t[8],a}var hl=(function(){var a=eo();return function(e,t,r,n,s,o){var i,c;for(t||(t=3),r||(r=0),n?c=Math.min(n*t+r,e.length):c=
+e.length,i=r;i<c;i+=t)a[0]=e[i],a[1]=e[i+1],a[2]=e[i+2],s(a,a,o),e[i]=a[0],e[i+1]=a[1],e[i+2]=a[2];return e}})();var W=a=>a,re=()=>[0,0,0],gn=a=>new Array(a).fill(0),T=(a,e)=>fn(W(a),W(e)),O=a=>ln(W(a)),E=(a,e)=>hn(re(),W(a),W(e)),k=(a,e)=>un(
+re(),W(a),e),N=(a,e)=>dn(re(),W(a),W(e)),C=a=>pn(re(),W(a)),A=(a,e,t=1)=>mn(re(),W(a),W(e),t);function rt(a,e,t){let r=cn(
 gn(16),t*Math.PI/180,W(e));return r===null?re():bn(re(),W(a),r)}function F(a,e){let t=on(gn(9),a);return br(re(),W(e),t)}
 function K(a,e){return br(re(),W(e),a)}function _(a,e,t){return Math.min(Math.max(a,e),t)}var ro="own cmap";var yn=256;function no({scalars:a},e,t,r){let{entries:n,flip:s,maps:o}=a,i=r?r.slice():new Uint8Array(4*n).fill(255),c=i.
 length/4-1||1;return i.map((l,h)=>{let[u,m]=[h>>2,h&3],p=Math.round((s?c-u:u)/c*(yn-1));return m===3?l:e[3*(o.indexOf(t)*
@@ -100,33 +100,33 @@ fe(r)}get distance(){return O(E(this.state.focal_point,this.state.position))}get
 let e=C(E(this.state.focal_point,this.state.position)),t=C(N(e,this.state.up));return[t,N(t,e),e]}sight(e){let{parallel:t,
 position:r,view_angle:n}=this.state;return t?{eye:null,halfHeight:this.height,pixels:e}:{eye:r,halfHeight:fe(n),pixels:e}}get planes(){
 let[e,t,r]=this.axes,{parallel:n,parallel_scale:s,view_angle:o}=this.state,{position:i,focal_point:c}=this.state,l=n?s:fe(
-o);return[e,k(e,-1),t,k(t,-1)].map((h,u)=>{let m=u<2?l*this.aspect:l;if(n)return[...h,m-A(h,c)];let p=T(h,r,m);return[...p,
--A(p,i)]})}get eye(){return this.state.parallel?[...k(this.axes[2],-1),0]:[...this.state.position,1]}at(e){let t=this.axes[2];
-if(this.state.parallel)return{height:this.height,ray:t};let r=E(e,this.state.position);return{height:A(r,t)*fe(this.state.
+o);return[e,k(e,-1),t,k(t,-1)].map((h,u)=>{let m=u<2?l*this.aspect:l;if(n)return[...h,m-T(h,c)];let p=A(h,r,m);return[...p,
+-T(p,i)]})}get eye(){return this.state.parallel?[...k(this.axes[2],-1),0]:[...this.state.position,1]}at(e){let t=this.axes[2];
+if(this.state.parallel)return{height:this.height,ray:t};let r=E(e,this.state.position);return{height:T(r,t)*fe(this.state.
 view_angle),ray:C(r)}}project(e){let[t,r]=this.axes,{height:n}=this.at(e);if(!(n>0))return null;let{parallel:s,position:o,
-focal_point:i}=this.state,c=E(e,s?i:o);return[A(t,c)/n/this.aspect,A(r,c)/n]}pan(e,t){let[r,n]=this.axes,{height:s}=this;
-this.shift(T(k(r,e*this.aspect*s),n,t*s))}rotate(e,t){if(this.globe)return this.roam(e,t);let{state:r,limits:n}=this,s=C(
+focal_point:i}=this.state,c=E(e,s?i:o);return[T(t,c)/n/this.aspect,T(r,c)/n]}pan(e,t){let[r,n]=this.axes,{height:s}=this;
+this.shift(A(k(r,e*this.aspect*s),n,t*s))}rotate(e,t){if(this.globe)return this.roam(e,t);let{state:r,limits:n}=this,s=C(
 r.up),o=E(r.position,r.focal_point);o=rt(o,s,-n.turn*e*Math.min(this.aspect,n.widest_turn));let i=C(N(s,o));o=rt(o,i,n.turn*
-t),r.position=T(r.focal_point,o),r.up=C(N(o,i))}roam(e,t){let{state:r,limits:n,globe:s}=this,o=O(r.position),i=Math.max(
+t),r.position=A(r.focal_point,o),r.up=C(N(o,i))}roam(e,t){let{state:r,limits:n,globe:s}=this,o=O(r.position),i=Math.max(
 o-s,0)*fe(r.view_angle),c=r.parallel?r.parallel_scale:i,l=Math.min(c/s*180/Math.PI,n.turn),h=Math.hypot(r.position[0],r.
 position[1])/o,u=Math.min(l*this.aspect/Math.max(h,so),n.turn);this.turn(gr,-u*e);let[m]=this.axes,p=Math.abs(r.position[2])/
-o,f=yr(r);this.turn(m,l*t),Math.abs(r.position[2])/o>Math.max(wn,p)&&(this.state=f);let[,,b]=this.axes,g=T(gr,b,-A(gr,b));
+o,f=yr(r);this.turn(m,l*t),Math.abs(r.position[2])/o>Math.max(wn,p)&&(this.state=f);let[,,b]=this.axes,g=A(gr,b,-T(gr,b));
 O(g)>1-wn&&(this.state.up=C(g))}turn(e,t){let{state:r}=this;for(let n of["position","focal_point","up"])r[n]=rt(r[n],e,t)}zoomBy(e,t=0,r=0){
 if(!Number.isFinite(e)||e<=0)return;this.flat||this.focusAt(t,r);let{farthest_zoom:n,deepest_zoom:s}=this.limits,o=_(e,n/
-this.zoom,s/this.zoom),[i,c,l]=this.axes,h=this.height*(1-1/o);this.shift(T(k(i,t*this.aspect*h),c,r*h)),this.state.parallel?
-this.state.parallel_scale/=o:this.approach(this.height/o,l)}ray(e,t){let[r,n,s]=this.axes,{height:o,state:i}=this,c=T(T(
-i.focal_point,r,e*this.aspect*o),n,t*o);return i.parallel?[T(c,s,-this.distance),s]:[T(i.position,[0,0,0]),C(E(c,i.position))]}approach(e,t){
-let r=Math.max(e/fe(this.limits.view_angle),this.nearest);this.state.position=T(this.state.focal_point,t,-r),this.state.
-view_angle=Math.atan(e/r)*360/Math.PI}focusAt(e,t){let r=this.pick?.(e,t);if(!r)return;let n=this.axes[2],s=A(E(r,this.state.
-position),n);s>0&&(this.state.focal_point=T(this.state.position,n,s))}shift(e){this.state.focal_point=T(this.state.focal_point,
-e),this.state.position=T(this.state.position,e)}};function yr(a){let{position:e,focal_point:t,up:r}=a;return{...a,position:[
+this.zoom,s/this.zoom),[i,c,l]=this.axes,h=this.height*(1-1/o);this.shift(A(k(i,t*this.aspect*h),c,r*h)),this.state.parallel?
+this.state.parallel_scale/=o:this.approach(this.height/o,l)}ray(e,t){let[r,n,s]=this.axes,{height:o,state:i}=this,c=A(A(
+i.focal_point,r,e*this.aspect*o),n,t*o);return i.parallel?[A(c,s,-this.distance),s]:[A(i.position,[0,0,0]),C(E(c,i.position))]}approach(e,t){
+let r=Math.max(e/fe(this.limits.view_angle),this.nearest);this.state.position=A(this.state.focal_point,t,-r),this.state.
+view_angle=Math.atan(e/r)*360/Math.PI}focusAt(e,t){let r=this.pick?.(e,t);if(!r)return;let n=this.axes[2],s=T(E(r,this.state.
+position),n);s>0&&(this.state.focal_point=A(this.state.position,n,s))}shift(e){this.state.focal_point=A(this.state.focal_point,
+e),this.state.position=A(this.state.position,e)}};function yr(a){let{position:e,focal_point:t,up:r}=a;return{...a,position:[
 ...e],focal_point:[...t],up:[...r]}}function G(a,e,t){let{state:r,aspect:n}=e,{center:s,extent:o,frame:i}=a,[c,l,h]=e.axes.map(S=>F(i,S)),u=S=>E(F(i,E(S,s)),
 t),m=u(r.focal_point),p=k(t,-1),f=Math.max(.51*o,a.reach??0),d=new Array(16).fill(0),b=r.parallel?r.parallel_scale:fe(r.
-view_angle);if([c.map(S=>S/b/n),l.map(S=>S/b)].forEach((S,R)=>{for(let L=0;L<3;L+=1)d[4*L+R]=S[L];d[12+R]=-A(S,m)}),r.parallel){
-for(let S=0;S<3;S+=1)d[4*S+2]=h[S]/f;return d[14]=-A(h,p)/f,d[15]=1,d}let y=u(r.position),x=A(E(p,y),h),v=Math.max(x+f,.001*
-f),w=Math.max(x-f,.001*v),M=(v+w)/(v-w),P=-2*v*w/(v-w);for(let S=0;S<3;S+=1)d[4*S+2]=h[S]*M,d[4*S+3]=h[S];return d[15]=-A(
+view_angle);if([c.map(S=>S/b/n),l.map(S=>S/b)].forEach((S,R)=>{for(let L=0;L<3;L+=1)d[4*L+R]=S[L];d[12+R]=-T(S,m)}),r.parallel){
+for(let S=0;S<3;S+=1)d[4*S+2]=h[S]/f;return d[14]=-T(h,p)/f,d[15]=1,d}let y=u(r.position),x=T(E(p,y),h),v=Math.max(x+f,.001*
+f),w=Math.max(x-f,.001*v),M=(v+w)/(v-w),P=-2*v*w/(v-w);for(let S=0;S<3;S+=1)d[4*S+2]=h[S]*M,d[4*S+3]=h[S];return d[15]=-T(
 h,y),d[14]=d[15]*M+P,d}function Mn({center:a,frame:e},t,r,n,s){let[o,i]=t.axes,{height:c,state:l,aspect:h}=t,[u,m]=[k(o,
-2*c*h/n),k(i,2*c/s)],p=T(T(E(l.focal_point,a),u,-n/2),m,-s/2);return{u_rayCorner:E(F(e,p),r),u_rayX:F(e,u),u_rayY:F(e,m)}}var oe=8,Sn=9,ao=.2,oo=1.4,En=55,io=125,co=.5,lo=4,Tn=4e-5,An=2e-6;function _n(a,e,t,r,n){let s=Math.max(n-e,Math.min(e/
+2*c*h/n),k(i,2*c/s)],p=A(A(E(l.focal_point,a),u,-n/2),m,-s/2);return{u_rayCorner:E(F(e,p),r),u_rayX:F(e,u),u_rayY:F(e,m)}}var oe=8,Sn=9,ao=.2,oo=1.4,En=55,io=125,co=.5,lo=4,An=4e-5,Tn=2e-6;function _n(a,e,t,r,n){let s=Math.max(n-e,Math.min(e/
 2,n),2)/a;if(t*(r+oe)<=s)return{scale:1,samples:r};let o=Math.min(Sn,r),i=Math.sqrt(s/(o+oe)/t);return i<1?{scale:Math.max(
 i,ao),samples:o}:{scale:1,samples:_(Math.floor(s/t-oe),o,r)}}function Pn(a,e,t,r,n){if(!n)return En;let s=Math.min(Sn,r),
 o=e+a*t*co**2*(s+oe);return _(o,En,io)}function Rn(a,e,t,r){return Math.max(Math.floor(a/(e*t*(r+oe))),lo)}function Ln(a){
@@ -145,7 +145,7 @@ this.entries.set(n,s=this.build(e,t,r)),!s.ready&&!s.error&&this.finish(s),s}bui
 o=n.counted(s.createProgram()),i=[s.VERTEX_SHADER,s.FRAGMENT_SHADER],c=ho+r.map(u=>`#define ${u}
 `).join(""),l=[e,t].map((u,m)=>{let p=n.counted(s.createShader(i[m]));return s.shaderSource(p,u.startsWith("#version")?u:
 c+u),s.compileShader(p),s.attachShader(o,p),p});return uo.forEach((u,m)=>s.bindAttribLocation(o,m,u)),s.linkProgram(o),{
-program:o,shaders:l,uniforms:new Map,...{ready:!1,error:"",warm:!1,price:Tn}}}finish(e){let t=this.graphics.context,{program:r}=e,
+program:o,shaders:l,uniforms:new Map,...{ready:!1,error:"",warm:!1,price:An}}}finish(e){let t=this.graphics.context,{program:r}=e,
 n=this.parallel?.COMPLETION_STATUS_KHR;if(n&&!t.getProgramParameter(r,n))return;if(!t.getProgramParameter(r,t.LINK_STATUS)){
 if(t.isContextLost())return;let i=[...e.shaders.map(c=>t.getShaderInfoLog(c)),t.getProgramInfoLog(r)].filter(Boolean).join(
 `
@@ -203,7 +203,7 @@ this.poles.length,1)]}get angles(){let{cells:e}=this,[t,r]=this.raysSize,n=new F
 (s,o)=>{let i=[];for(let c=0;c<=e;c+=1){let[l,h]=this.ray(o,c),u=Math.atan2(h,l);for(;u<i[c-1];)u+=2*Math.PI;i.push(u)}i.
 forEach((c,l)=>{let h=i[0]+2*Math.PI*l/e+1e-6,u=i.findLastIndex(m=>m<=h);n.set([c,Math.hypot(...this.ray(o,l)),u],4*(o*t+
 l))})}),n}get uniforms(){let e=this.poles.flatMap(({line:r,inward:n,near:s},o)=>[r,n,s,this.shift(o)]),t=this.poles.flatMap(
-({plane:r})=>r);for(;e.length<8;)e.push(0);for(;t.length<12;)t.push(0);return{u_poles:e,u_planes:t,u_polar:Number(this.isAlongJ)}}};var In=32767,[go,yo,xo,vo]=[0,1,2,3],wo=2,Mo=8,Eo=4,So=4,To=64,Ao=64,_o=2e4,Po=1e30,Cn=1e-5;function Un(a,e,t){let[r,n]=t,
+({plane:r})=>r);for(;e.length<8;)e.push(0);for(;t.length<12;)t.push(0);return{u_poles:e,u_planes:t,u_polar:Number(this.isAlongJ)}}};var In=32767,[go,yo,xo,vo]=[0,1,2,3],wo=2,Mo=8,Eo=4,So=4,Ao=64,To=64,_o=2e4,Po=1e30,Cn=1e-5;function Un(a,e,t){let[r,n]=t,
 s=a.shape[1],[o,i]=e.drawn,c=new Float64Array(r*n*3);for(let l=0,h=0;l<r;l+=1){let u=3*((l+o+1)*s+i+1);for(let m=0;m<3*n;m+=
 1)c[h++]=a.data[u+m]+e.middle[m%3]}return{data:c,shape:[r,n,3]}}function Vn(a,e,t){let[r,n]=t,s=3*a.shape[1],[o,i]=e.drawn,
 c=new Int16Array(r*n*3);for(let l=0,h=0;l<r;l+=1)for(let u=0;u<n;u+=1,h+=3){let m=s*(l+o+1)+3*(u+i+1),p=b=>[0,1,2].map(g=>a.
@@ -244,7 +244,7 @@ r?r[o]:1;for(let i of[0,1])s[4*o+1+i]=n?n[2*o+i]:0}return s}padded(){let e=this.
 3*4);for(let r=0;r<e.length/3;r+=1)for(let n=0;n<3;n+=1)t[4*r+n]=e[3*r+n];return t}flowTexture(e){let{width:t,height:r}=this.
 poles.size,n=this.graphics.context,o=this.flows.get(e)??this.texture(t,r,n.RGBA32F,this.flow(e));this.flows.delete(e),this.
 flows.set(e,o);for(let[i,c]of this.flows){if(this.flows.size<=So)break;this.flows.delete(i),this.textures.delete(c),this.
-graphics.free("Texture",c)}return o}partsOf({from:e,to:t}){let r=_(Math.ceil((t-e)*this.fastest/To),1,Ao),n=s=>s===r?t:e+
+graphics.free("Texture",c)}return o}partsOf({from:e,to:t}){let r=_(Math.ceil((t-e)*this.fastest/Ao),1,To),n=s=>s===r?t:e+
 (t-e)*s/r;return Array.from({length:r},(s,o)=>[n(o),n(o+1)])}*slices(e){let{graphics:t,trace:r,header:n}=this,s=t.context,
 {geometry:o,slices:i}=n,[c,l]=r.nodes,[h,u]=[o.rows.size,o.columns.size],m={width:u,height:h,layers:i.count,channels:4,levels:o.
 levels},p=s.createTexture();this.result=p,s.activeTexture(s.TEXTURE0),Qe(s,p,m);let{poles:f}=this,d=this.texture(f.size.
@@ -299,7 +299,7 @@ h)||h):e.period,m=(i?t.time-s[0]:t.clock)/u%n.mostTurns,p=u*(i?o:e.speed),f=m%n.
 let{noiseDoublings:r,clearDoublings:n}=a.constants,{frame:s,center:o}=a.geometry,i=F(s,E(e.focus,o)),c=2**(r-n)-1,l=2**n,
 h=i.map(p=>_(Math.round(p/t/l),-c,c)*l),u=h.map(p=>p/Math.SQRT2),m=u.map(p=>Math.floor(p/l)*l);return{u_noiseOrigin:h.map(
 (p,f)=>p*t-e.anchor[f]),u_noiseOriginEven:h,u_noiseOriginOdd:m,u_noiseRestOdd:u.map((p,f)=>p-m[f])}}function No(a,e,t){let{
-ends:r,geometry:n,constants:s}=a;if(!r)return{};let{frame:o,center:i}=n,c=F(o,[1,0,0]),[l,h]=r.map(b=>b-i[0]-A(c,e.anchor)),
+ends:r,geometry:n,constants:s}=a;if(!r)return{};let{frame:o,center:i}=n,c=F(o,[1,0,0]),[l,h]=r.map(b=>b-i[0]-T(c,e.anchor)),
 u=2**s.clearDoublings,m=k(c,(r[1]-r[0])/t),p=k(m,Math.SQRT1_2),f=b=>b.map(g=>Math.floor(g/u)*u),d=b=>b.map(g=>g-Math.floor(
 g/u)*u);return{u_ends:[c[0],c[1],l,h],u_turnEven:f(m),u_turnRestEven:d(m),u_turnOdd:f(p),u_turnRestOdd:d(p)}}function Io({
 size:a,stepSize:e,repeat:t},r,n){return{u_stepSize:e.map(s=>s*n),u_imageSize:a.map(s=>s*n*r),u_imageRound:[Number(t[1]),
@@ -323,20 +323,20 @@ tileBlocks:o}=this.header,i=s[t-1].map(u=>Math.ceil(u/o)),[c,l]=e===B?[[0,0],i]:
 tileBlocks:n}=this.header,s=n/2,[,o,i]=r===B?[0,0,0]:ce(r);return[s*e-n*o,s*t-n*i,s]}choose(e){let t=new Map,{depth:r,finest:n}=this.
 header,s=[B];for(let o of s){let i=o===B?[r,0,0]:ce(o),c={key:i,needed:!1,pixels:0,finer:[]},[l,h,u,m]=this.blocksOf(o,i),
 p=this.header.blocks[i[0]][1],f=new Set;for(let d=l;d<u;d+=1)for(let b=h;b<m;b+=1){let g=this.place(i[0],d,b);if(!Sr(e,g)||
-e.shownOn?.sees(g)===!1)continue;let y=Tr(e,g)*(e.shownOn?.scale(g)??1);i[0]>n&&y>e.cellPixels?f.add(d*p+b):c.needed=!0,
+e.shownOn?.sees(g)===!1)continue;let y=Ar(e,g)*(e.shownOn?.scale(g)??1);i[0]>n&&y>e.cellPixels?f.add(d*p+b):c.needed=!0,
 f.has(d*p+b)||(c.pixels=Math.max(c.pixels,y))}f.size&&(c.finer=this.children(o,i).filter(d=>{let[b,g,y]=this.finerPart(d,
 B);return[...f].some(x=>{let[v,w]=[Math.floor(x/p)-b,x%p-g];return v>=0&&v<y&&w>=0&&w<y})}).map(z)),t.set(o,c),s.push(...c.
-finer)}return t}};function Sr({planes:a},[e,t,r,n]){return a.every(s=>A(s,[e,t,r])+s[3]>=-n*O(s.slice(0,3)))}function Tr({
+finer)}return t}};function Sr({planes:a},[e,t,r,n]){return a.every(s=>T(s,[e,t,r])+s[3]>=-n*O(s.slice(0,3)))}function Ar({
 eye:a,halfHeight:e,pixels:t},[r,n,s,o,i]){let c=a?Math.max(O(E([r,n,s],a))-o,i):1;return i*.5*t/(e*c)}function Wn(a){return[
-...a].filter(([t,{needed:r}])=>t!==B&&r).sort(([,t],[,r])=>r.pixels-t.pixels).map(([t])=>t)}function Ar(a,e){let t=new Map,
+...a].filter(([t,{needed:r}])=>t!==B&&r).sort(([,t],[,r])=>r.pixels-t.pixels).map(([t])=>t)}function Tr(a,e){let t=new Map,
 r=s=>{t.delete(s),a.get(s)?.finer.forEach(r)},n=s=>{let{needed:o=!1,finer:i=[]}=a.get(s)??{},c=i.filter(n);return s!==B&&
 !o&&c.length===i.length?!0:s!==B&&!e(s)?(c.forEach(r),!1):(t.set(s,c),!0)};return n(B),t}function pt(a,e,t){let r=s=>Math.
 min(s*2**e,t-1),n=Math.floor(a);return r(n)+(a-n)*(r(n+1)-r(n))}function $n(a,e,t){let r=2**e,n=Math.max(Math.min(Math.floor(
 a/r),Math.ceil((t-1)/r)-1),0);return n+(a-n*r)/(Math.min((n+1)*r,t-1)-n*r)}var jn=1e4,Bo=20,Ho=4,Go=4,zo="The surface is shown coarse",Wo="A part of the surface is shown coarse",$o="A time step c\
-annot be shown",Te=class{times=new Map;now;constructor(e=()=>performance.now()){this.now=e}add(e){this.times.set(e,this.
-now())}has(e){return this.now()-(this.times.get(e)??-1/0)<jn}},ke=class{source;taker;running=new Map;jobs=[];failed=new Te;constructor(e,t){
+annot be shown",Ae=class{times=new Map;now;constructor(e=()=>performance.now()){this.now=e}add(e){this.times.set(e,this.
+now())}has(e){return this.now()-(this.times.get(e)??-1/0)<jn}},ke=class{source;taker;running=new Map;jobs=[];failed=new Ae;constructor(e,t){
 this.source=e,this.taker=t}want(e){this.jobs=e;let t=new Set(e.map(String));for(let[r,n]of this.running)t.has(r)||(this.
-running.delete(r),n.abort());this.next()}stop(){this.want([]),this.failed=new Te}next(){for(let e of this.jobs){if(this.
+running.delete(r),n.abort());this.next()}stop(){this.want([]),this.failed=new Ae}next(){for(let e of this.jobs){if(this.
 running.size>=(this.source()?.atOnce??Ho))return;!this.running.has(String(e))&&!this.failed.has(String(e))&&this.run(e)}}async run(e){
 let{taker:t}=this,r=this.source();if(!r)return;let[n,s,o]=e,i=new AbortController,{signal:c}=i,l=h=>n?t.tiles?.has(z(n),
 h)??!1:t.parts.has(h);this.running.set(String(e),i);try{let h=await r.load(n,s,c,l,o);if(!c.aborted)for(let u of h)t.setPart(
@@ -370,64 +370,64 @@ c+l+g)+y]})}),p}function yt(a,e,t){if(a.map&&!t)return null;let[r,n,s]=a.map&&t?
 atan2(s,Math.hypot(r,n))];return o.every(Number.isFinite)?[o[0]*rs,o[1]*rs]:null}function ss(a,e,t,r){let[n,s]=[e,t];if(a.
 map&&r){let{map:p,radius:f}=a,d=Yo*(p[2]-p[0])/(Math.hypot(...t)||1),[b,g]=[-d,d].map(y=>_r(p,r,e.map((x,v)=>x+y*t[v])));
 n=_r(p,r,e),s=g.map((y,x)=>f*(y-b[x])/(2*d))}let[o,i,c]=n,[l,h]=[Math.hypot(o,i)||1,Math.hypot(o,i,c)||1],u=(o*s[1]-i*s[0])/
-l,m=(o*s[0]+i*s[1])/l;return[u,(l*s[2]-c*m)/h]}var ls=2,as=8,Ko=4,Jo=10,hs=.05,us=.25,os=4,Zo=.01,ms=1e-6,Qo=.001;function ei({scene:a,place:e},[t,r]){let{rows:n,columns:s,
-triangles:o}=a.header.geometry;if(o){let p=[-t-r,t,r];return a.cornersAt(e).map(([f,d],b)=>[f,d+p[b]])}let[i,c]=[e[0]+t+
-s.before,e[1]+r+n.before],[l,h]=[Math.floor(i),Math.floor(c)],[u,m]=[i-l,c-h];return[(1-u)*(1-m),u*(1-m),(1-u)*m,u*m].map(
-(p,f)=>{let d=_(l+(f&1),0,s.size-1);return[_(h+(f>>1),0,n.size-1)*s.size+d,p]})}function Pr(a,e=[0,0]){let{scene:t,moment:r}=a,
-{slices:n}=t.header,s=ei(a,e),[o,i,c]=r,l=s.map(([p])=>p),h=(o===i?[o]:[o,i]).map(p=>t.texels(p,l)),u=o===i?[1]:[1-c,c],
-m=me(t.header)?ti(s.map((p,f)=>h[0](0,f))):s.map(()=>1);return p=>{let f=[0,0,0,0];return s.forEach(([,d],b)=>{let g=p+(p>
-n.lags.length?-1:1)*n.lags.length,y=m[b]<0&&p>0?g:p;h.forEach((x,v)=>{u[v]&&x(y,b).forEach((w,M)=>{let P=p===ls&&M===3?Math.
-max(w,0):w;f[M]+=d*u[v]*P*(M<3?m[b]:1)})})}),f}}function ti(a){let e=[0,0,0];return a.map(([t,r,n])=>{let s=A(e,[t,r,n])<
-0?-1:1;return e=T(e,[t,r,n],s),s})}function ri(a,e,t,r,n){let[s,o]=[a(0).slice(0,3),0],i=a(t+1)[3],c=Math.min(i,e[e.length-
-1]),l=[];for(let h=0;h<e.length&&o<c;h+=1){let u=a(t+h+1).slice(0,3);for(let m=1;m<=as;m+=1){let p=m/as,f=Math.min(o+p*(e[h]-
-o),c),d=(f-o)/(e[h]-o),b=s.map((g,y)=>g+d*(u[y]-g));if(l.push(k(b,r*f*n)),f===c)break}[s,o]=[u,e[h]]}return l}function ps({
-scene:a,place:e,position:t}){let{image:r,geometry:n}=a.header;if(!r)return l=>T(t,K(n.frame,l));let{alongI:s,alongJ:o}=r,
-i=[is(s,e[0]),is(o,e[1])],c=Fe(a,e);return([l,h])=>{let u=[cs(s,i[0]+l),cs(o,i[1]+h)];return u.some(Number.isNaN)?null:T(
-t,E(Fe(a,u),c))}}function Ne(a,e){return T(Fe(a,e),a.header.geometry.center)}function Fe(a,e){let{data:t}=a.part("positi\
-on"),r=a.cornersAt(e),n=[0,1,2].map(s=>gt(r,o=>t[3*o+s]));return K(a.header.geometry.frame,n)}function fs(a,e){let{shape:t,
-triangles:r}=a.header.geometry;if(r){let i=(c,l)=>Fe(a,Oe(Math.floor(e[1]),c,l));return[E(i(1,0),i(0,0)),E(i(0,1),i(0,0))]}
-let[n,s]=e.map((i,c)=>_(i,.5,t[1-c]-1.5)),o=(i,c)=>Fe(a,[n+i,s+c]);return[E(o(.5,0),o(-.5,0)),E(o(0,.5),o(0,-.5))]}function is(a,e){let t=Math.min(Math.floor(e),a.length-2);return a[t]+(e-t)*(a[t+1]-a[t])}function cs(a,e){let t=a.findIndex(
-r=>r>=e);return t<0||e<a[0]?NaN:t===0?0:t-1+(e-a[t-1])/(a[t]-a[t-1])}function ni({scene:a,place:e,position:t},r,n,s){let{
-geometry:o,image:i}=a.header,c=N(...fs(a,e)),{height:l,ray:h}=n.at(t),u=Math.max(Math.abs(A(C(c),h)),hs),m=2*l/s;if(i){let[
-g,y]=[i.alongI,i.alongJ].map((v,w)=>{let M=Math.min(Math.floor(e[w]),v.length-2);return(v[M+1]-v[M])*i.stepSize[w]}),x=Math.
-sqrt(O(c)/(g*y));return r.lod?Math.max(m/Math.sqrt(u),x):x}let p=o.extent/Number(r.resolution),f=A(h,n.at(n.state.focal_point).
-ray),b=m*Math.sqrt(Math.max(f,us/u)/u)*Number(r.grain);return r.lod?r.fixed_grain?Math.max(b,p):b:p}function si(a,e,t){let{
-scene:r,position:n}=a,{geometry:s,image:o}=r.header;if(o||!e.lod||e.fixed_grain)return 1;let i=C(N(...fs(r,a.place))),c=C(
-N(i,K(s.frame,Pr(a)(0).slice(0,3))));if(O(c)<.5)return 1;let{ray:l}=t.at(n),h=A(i,l),u=(h<0?-1:1)*Math.max(Math.abs(h),hs),
-[m,p]=t.axes.slice(0,2).map(v=>T(v,l,-A(i,v)/u)),f=O(N(m,p)),d=.5*(A(m,m)+A(p,p)),b=Math.sqrt(d+Math.sqrt(Math.max(d**2-
-f**2,0))),g=Math.sqrt(b*Math.max(f/b,us*b)),y=Math.hypot(A(m,c),A(p,c)),x=_(f/(y*g),1/os,os);return Math.abs(x-1)<Zo?1:x}
-function ai(a,e,t){let r=[],[n,s]=[a,t];for(let o of e){let i=O(E(o,n));if(i>=s){s>0&&r.push(T(n,E(o,n),s/(i||1)));break}
-r.push(o),s-=i,n=o}return r}function ds([a,e,t]){return a===e?[[[a,a,0],1]]:[[[a,a,0],1-t],[[e,e,0],t]]}function Rr(a){let e=[
-0,0,0];for(let[t,r]of ds(a.moment))r&&(e=T(e,oi({...a,moment:t}),r));return e}function oi(a){let{scene:e,position:t}=a,{
-slices:r,image:n,speed:s}=e.header,o=Pr(a),[i,c,l]=o(0),h=[i,c,l],u=k(h,Qo*(n?1/n.stepSize[0]:r.cell)/(O(h)||1)),m=O(h)>
-ms?E(ps(a)(u)??t,t):h;return k(C(m),o(ls)[3]*s.typical)}function bs(a,e,t,r){let{scene:n,position:s}=a,{slices:o,image:i}=n.
-header,c=Pr(a),l=!me(n.header),h=c(0),u=[h[0],h[1],h[2]],m=ps(a),p=[],f=e.two_sided||!l?o.sides:1;for(let M=0;M<f&&O(u)>
-ms;M+=1){let P=i?1:h[3]*o.unit,R=ri(c,o.lags,M*o.lags.length,M?1:-1,P).map(m),L=R.findIndex(U=>U===null);p.push(R.slice(
-0,L<0?void 0:L))}let d=Number(e.samples),b=ct(n.header,e,!0)?2*d-1:d,y=(f===2?Math.floor(b/2):b-1)*si(a,e,t),x=Number(e.
-spacing)*ni(a,e,t,r),v=M=>{let[P=[],S=[]]=p.map(R=>ai(s,R,M));return[...P.reverse(),s,...S]};return{path:v(Ko*Math.max(y,
-Jo)*x),sampled:v(y*x),directed:l,velocity:Rr(a)}}var ii=8,ci=1e-6,li=.001,hi=89.99,ui=a=>a-360*Math.round(a/360);function Lr([a,e]){return[[a,e],[a+1,e],[a,e+1],[a+1,e+1]]}
+l,m=(o*s[0]+i*s[1])/l;return[u,(l*s[2]-c*m)/h]}var ls=2,as=8,Ko=4,Jo=10,hs=.05,Zo=.25,Qo=.75,os=4,ei=.01,us=1e-6,ti=.001;function ri({scene:a,place:e},[t,r]){let{rows:n,
+columns:s,triangles:o}=a.header.geometry;if(o){let p=[-t-r,t,r];return a.cornersAt(e).map(([f,d],b)=>[f,d+p[b]])}let[i,c]=[
+e[0]+t+s.before,e[1]+r+n.before],[l,h]=[Math.floor(i),Math.floor(c)],[u,m]=[i-l,c-h];return[(1-u)*(1-m),u*(1-m),(1-u)*m,
+u*m].map((p,f)=>{let d=_(l+(f&1),0,s.size-1);return[_(h+(f>>1),0,n.size-1)*s.size+d,p]})}function Pr(a,e=[0,0]){let{scene:t,
+moment:r}=a,{slices:n}=t.header,s=ri(a,e),[o,i,c]=r,l=s.map(([p])=>p),h=(o===i?[o]:[o,i]).map(p=>t.texels(p,l)),u=o===i?
+[1]:[1-c,c],m=me(t.header)?ni(s.map((p,f)=>h[0](0,f))):s.map(()=>1);return p=>{let f=[0,0,0,0];return s.forEach(([,d],b)=>{
+let g=p+(p>n.lags.length?-1:1)*n.lags.length,y=m[b]<0&&p>0?g:p;h.forEach((x,v)=>{u[v]&&x(y,b).forEach((w,M)=>{let P=p===
+ls&&M===3?Math.max(w,0):w;f[M]+=d*u[v]*P*(M<3?m[b]:1)})})}),f}}function ni(a){let e=[0,0,0];return a.map(([t,r,n])=>{let s=T(
+e,[t,r,n])<0?-1:1;return e=A(e,[t,r,n],s),s})}function si(a,e,t,r,n){let[s,o]=[a(0).slice(0,3),0],i=a(t+1)[3],c=Math.min(
+i,e[e.length-1]),l=[];for(let h=0;h<e.length&&o<c;h+=1){let u=a(t+h+1).slice(0,3);for(let m=1;m<=as;m+=1){let p=m/as,f=Math.
+min(o+p*(e[h]-o),c),d=(f-o)/(e[h]-o),b=s.map((g,y)=>g+d*(u[y]-g));if(l.push(k(b,r*f*n)),f===c)break}[s,o]=[u,e[h]]}return l}
+function ms({scene:a,place:e,position:t}){let{image:r,geometry:n}=a.header;if(!r)return l=>A(t,K(n.frame,l));let{alongI:s,
+alongJ:o}=r,i=[is(s,e[0]),is(o,e[1])],c=Fe(a,e);return([l,h])=>{let u=[cs(s,i[0]+l),cs(o,i[1]+h)];return u.some(Number.isNaN)?
+null:A(t,E(Fe(a,u),c))}}function Ne(a,e){return A(Fe(a,e),a.header.geometry.center)}function Fe(a,e){let{data:t}=a.part(
+"position"),r=a.cornersAt(e),n=[0,1,2].map(s=>gt(r,o=>t[3*o+s]));return K(a.header.geometry.frame,n)}function ps(a,e){let{
+shape:t,triangles:r}=a.header.geometry;if(r){let i=(c,l)=>Fe(a,Oe(Math.floor(e[1]),c,l));return[E(i(1,0),i(0,0)),E(i(0,1),
+i(0,0))]}let[n,s]=e.map((i,c)=>_(i,.5,t[1-c]-1.5)),o=(i,c)=>Fe(a,[n+i,s+c]);return[E(o(.5,0),o(-.5,0)),E(o(0,.5),o(0,-.5))]}function is(a,e){let t=Math.min(Math.floor(e),a.length-2);return a[t]+(e-t)*(a[t+1]-a[t])}function cs(a,e){let t=a.findIndex(
+r=>r>=e);return t<0||e<a[0]?NaN:t===0?0:t-1+(e-a[t-1])/(a[t]-a[t-1])}function ai(a,e,t,r){let{scene:n,place:s,position:o}=a,
+{geometry:i,image:c}=n.header,{height:l,ray:h}=t.at(o),u=2*l/r;if(c){let f=N(...ps(n,s)),d=Math.max(Math.abs(T(C(f),h)),
+hs),[b,g]=[c.alongI,c.alongJ].map((x,v)=>{let w=Math.min(Math.floor(s[v]),x.length-2);return(x[w+1]-x[w])*c.stepSize[v]}),
+y=Math.sqrt(O(f)/(b*g));return e.lod?Math.max(u/Math.sqrt(d),y):y}let m=i.extent/Number(e.resolution);if(!e.lod)return m;
+let p=u*fs(a,t).side*Number(e.grain);return e.fixed_grain?Math.max(p,m):p}function oi(a,e,t){if(a.scene.header.image||!e.
+lod||e.fixed_grain)return 1;let{side:r,across:n,area:s}=fs(a,t);if(!n)return 1;let o=_(s/(n*r),1/os,os);return Math.abs(
+o-1)<ei?1:o}function fs(a,e){let{geometry:t}=a.scene.header,r=C(N(...ps(a.scene,a.place))),n=C(N(r,K(t.frame,Pr(a)(0).slice(
+0,3)))),{ray:s}=e.at(a.position),o=T(r,s),i=(o<0?-1:1)*Math.max(Math.abs(o),hs),[c,l]=e.axes.slice(0,2).map(d=>A(d,s,-T(
+r,d)/i)),h=O(N(c,l)),u=.5*(T(c,c)+T(l,l)),m=Math.sqrt(u+Math.sqrt(Math.max(u**2-h**2,0))),p=Math.sqrt(m*Math.max(h/m,Zo*
+m)),f=Math.hypot(T(c,n),T(l,n));return{side:Math.max(p,Qo*f),across:f,area:h}}function ii(a,e,t){let r=[],[n,s]=[a,t];for(let o of e){
+let i=O(E(o,n));if(i>=s){s>0&&r.push(A(n,E(o,n),s/(i||1)));break}r.push(o),s-=i,n=o}return r}function ds([a,e,t]){return a===
+e?[[[a,a,0],1]]:[[[a,a,0],1-t],[[e,e,0],t]]}function Rr(a){let e=[0,0,0];for(let[t,r]of ds(a.moment))r&&(e=A(e,ci({...a,
+moment:t}),r));return e}function ci(a){let{scene:e,position:t}=a,{slices:r,image:n,speed:s}=e.header,o=Pr(a),[i,c,l]=o(0),
+h=[i,c,l],u=k(h,ti*(n?1/n.stepSize[0]:r.cell)/(O(h)||1)),m=O(h)>us?E(ms(a)(u)??t,t):h;return k(C(m),o(ls)[3]*s.typical)}
+function bs(a,e,t,r){let{scene:n,position:s}=a,{slices:o,image:i}=n.header,c=Pr(a),l=!me(n.header),h=c(0),u=[h[0],h[1],h[2]],
+m=ms(a),p=[],f=e.two_sided||!l?o.sides:1;for(let M=0;M<f&&O(u)>us;M+=1){let P=i?1:h[3]*o.unit,R=si(c,o.lags,M*o.lags.length,
+M?1:-1,P).map(m),L=R.findIndex(U=>U===null);p.push(R.slice(0,L<0?void 0:L))}let d=Number(e.samples),b=ct(n.header,e,!0)?
+2*d-1:d,y=(f===2?Math.floor(b/2):b-1)*oi(a,e,t),x=Number(e.spacing)*ai(a,e,t,r),v=M=>{let[P=[],S=[]]=p.map(R=>ii(s,R,M));
+return[...P.reverse(),s,...S]};return{path:v(Ko*Math.max(y,Jo)*x),sampled:v(y*x),directed:l,velocity:Rr(a)}}var li=8,hi=1e-6,ui=.001,mi=89.99,pi=a=>a-360*Math.round(a/360);function Lr([a,e]){return[[a,e],[a+1,e],[a,e+1],[a+1,e+1]]}
 function xt({header:a},e){return e.map((t,r)=>_(Math.floor(t),0,a.geometry.shape[1-r]-2))}var gs=([a,e])=>[(1-a)*(1-e),a*
 (1-e),(1-a)*e,a*e];function ys(a,e,[t,r],n){let{earth:s}=a.header,o=Lr(e).map(d=>s&&yt(s,Ne(a,d),n));if(o.some(d=>!d||Math.
-abs(d[1])>hi))return null;let[i,c,l,h]=o.map(d=>[ui(d[0]-t),d[1]-r]),[u,m]=[c,l].map(d=>[d[0]-i[0],d[1]-i[1]]),p=Math.max(
-...[...u,...m].map(Math.abs)),f=u[0]*m[1]-u[1]*m[0];return!f||[0,1].some(d=>Math.abs(i[d]-c[d]-l[d]+h[d])>li*p)?null:[(i[1]*
+abs(d[1])>mi))return null;let[i,c,l,h]=o.map(d=>[pi(d[0]-t),d[1]-r]),[u,m]=[c,l].map(d=>[d[0]-i[0],d[1]-i[1]]),p=Math.max(
+...[...u,...m].map(Math.abs)),f=u[0]*m[1]-u[1]*m[0];return!f||[0,1].some(d=>Math.abs(i[d]-c[d]-l[d]+h[d])>ui*p)?null:[(i[1]*
 m[0]-i[0]*m[1])/f,(i[0]*u[1]-i[1]*u[0])/f]}function xs(a,e,t,r){let{earth:n,geometry:s}=a.header,o=n&&!s.triangles&&yt(n,
-t,r);if(!o)return e;let i=xt(a,e);for(let c=0;c<ii;c+=1){let l=ys(a,i,o,r);if(!l)return e;let h=l.map(m=>Math.abs(m-.5)>
-.5+ci?m:0),u=xt(a,i.map((m,p)=>m+h[p]));if(String(u)===String(i))return i.map((m,p)=>m+_(l[p],0,1));i=u}return e}function vs(a,e){
+t,r);if(!o)return e;let i=xt(a,e);for(let c=0;c<li;c+=1){let l=ys(a,i,o,r);if(!l)return e;let h=l.map(m=>Math.abs(m-.5)>
+.5+hi?m:0),u=xt(a,i.map((m,p)=>m+h[p]));if(String(u)===String(i))return i.map((m,p)=>m+_(l[p],0,1));i=u}return e}function vs(a,e){
 let{earth:t,geometry:r}=a.header;if(!t||r.triangles)return a.cornersAt(e);let n=xt(a,e),s=gs(e.map((o,i)=>o-n[i]));return Lr(
 n).map(([o,i],c)=>[i*r.shape[1]+o,s[c]])}function ws(a,e){let{scene:t,place:r,position:n}=a,{earth:s,geometry:o}=t.header,
 i=s&&yt(s,n,e);if(!i)return null;let c=m=>ss(s,m.position,Rr(m),e),l=xt(t,r);if(o.triangles||!ys(t,l,i,e))return c(a);let h=gs(
 r.map((m,p)=>m-l[p])),u=Lr(l).map(m=>c({...a,place:m,position:Ne(t,m)}));return[0,1].map(m=>u.reduce((p,f,d)=>p+h[d]*f[m],
-0))}var mi=16;function Es(a,e,t,r,[n,s]){let{layer:o,coordinate:i,triangle:c}=a,{geometry:l}=o.scene.header,h=l.triangles?Oe(
-c,...i):pi(l,...i),u=t.ray(n,s),m=Ms(o.scene,h,u)[1],[p,f]=Ms(o.scene,m,u),d=xs(o.scene,f,p,e.parts.get("lonlat")),b=l.triangles?
-d:fi(e.header,o,d);return{point:{position:p,index:b,values:di(o.scene,r,d)},layer:o,place:d}}function pi({rows:a,columns:e,
-shape:t},r,n){let s=(o,{size:i,before:c},l)=>_(o*i-.5-c,0,l-1);return[s(r,e,t[1]),s(n,a,t[0])]}function fi(a,{key:e},[t,
+0))}var fi=16;function Es(a,e,t,r,[n,s]){let{layer:o,coordinate:i,triangle:c}=a,{geometry:l}=o.scene.header,h=l.triangles?Oe(
+c,...i):di(l,...i),u=t.ray(n,s),m=Ms(o.scene,h,u)[1],[p,f]=Ms(o.scene,m,u),d=xs(o.scene,f,p,e.parts.get("lonlat")),b=l.triangles?
+d:bi(e.header,o,d);return{point:{position:p,index:b,values:gi(o.scene,r,d)},layer:o,place:d}}function di({rows:a,columns:e,
+shape:t},r,n){let s=(o,{size:i,before:c},l)=>_(o*i-.5-c,0,l-1);return[s(r,e,t[1]),s(n,a,t[0])]}function bi(a,{key:e},[t,
 r]){let{pyramid:n,geometry:s,mesh:o,formula:i}=a,[c,l,h]=e,[u,m]=n?.shapes[0]??s.shape,p=o.tileCells*(n?.tileBlocks??0),
 f=i?2**(n?.depth??0):1,d=(b,g,y)=>pt(b+g*p,c,y)/f;return[d(t,h,m),d(r,l,u)]}function Ms(a,e,[t,r]){let{geometry:n}=a.header,
-{data:s}=a.part("position"),o=a.cornersAt(e).map(([v])=>v),[i,c,l]=o.map(v=>T(K(n.frame,[...s.subarray(3*v,3*v+3)]),n.center)),
-[h,u]=[E(c,i),E(l,i)],m=N(h,u),p=T(t,r,A(m,E(i,t))/A(m,r)),f=E(p,i),[d,b]=[N(f,u),N(h,f)].map(v=>A(v,m)/A(m,m));if(!(Math.
-max(Math.abs(d),Math.abs(b))<mi)){let v=Ne(a,e);return[T(t,r,A(E(v,t),r)/A(r,r)),e]}if(n.triangles)return[p,Oe(Math.floor(
+{data:s}=a.part("position"),o=a.cornersAt(e).map(([v])=>v),[i,c,l]=o.map(v=>A(K(n.frame,[...s.subarray(3*v,3*v+3)]),n.center)),
+[h,u]=[E(c,i),E(l,i)],m=N(h,u),p=A(t,r,T(m,E(i,t))/T(m,r)),f=E(p,i),[d,b]=[N(f,u),N(h,f)].map(v=>T(v,m)/T(m,m));if(!(Math.
+max(Math.abs(d),Math.abs(b))<fi)){let v=Ne(a,e);return[A(t,r,T(E(v,t),r)/T(r,r)),e]}if(n.triangles)return[p,Oe(Math.floor(
 e[1]),d,Math.max(b,0))];let[g,y]=n.shape,x=(v,w)=>{let[M,P,S]=o.map(v);return _(M+d*(P-M)+b*(S-M),0,w-1)};return[p,[x(v=>v%
-y,y),x(v=>Math.floor(v/y),g)]]}function di(a,e,t){let{header:r,parts:n}=a,{scalars:s,geometry:o}=r,i=vs(a,t),c=o.triangles?
+y,y),x(v=>Math.floor(v/y),g)]]}function gi(a,e,t){let{header:r,parts:n}=a,{scalars:s,geometry:o}=r,i=vs(a,t),c=o.triangles?
 Math.floor(t[1]):i[0][0],[l,h,u]=e,m={},p=s.choices.map((f,d)=>({...f,number:d}));for(let f of[s,...p]){let d=a.scalarParts(
 l,h,f),[b,g]=d.map(x=>n.get(x)?.data);if(f.name===null||f.name in m||!b||!g)continue;let y=x=>b[x]+u*(g[x]-b[x]);m[f.name]=
 f.flat?y(c):gt(i,y)}return m}function Ss({sigma:a,radii:e},t,[r,n,s,o]){let i=a*t,c=2**Math.max(Math.floor(Math.log2(Math.SQRT2*i)),0),l=c>1?c**2/6+1/
@@ -445,16 +445,16 @@ if(this.columns>=e&&this.rows>=t)return;let[r,n]=[Math.max(e,this.columns),Math.
 o=s.context;this.targets=[0,1].map(()=>{let i=s.counted(o.createTexture());o.bindTexture(o.TEXTURE_2D,i),o.texStorage2D(
 o.TEXTURE_2D,1,o.R16F,r,n),o.texParameteri(o.TEXTURE_2D,o.TEXTURE_MIN_FILTER,o.NEAREST),o.texParameteri(o.TEXTURE_2D,o.TEXTURE_MAG_FILTER,
 o.NEAREST);let c=s.counted(o.createFramebuffer());return o.bindFramebuffer(o.FRAMEBUFFER,c),o.framebufferTexture2D(o.FRAMEBUFFER,
-o.COLOR_ATTACHMENT0,o.TEXTURE_2D,i,0),{frame:c,texture:i}}),[this.columns,this.rows]=[r,n]}};var bi=3,Ts=5;function As({shape:a,triangles:e},t,r,n){let[s,o]=t.shape,i=new Int8Array(s*o).fill(e?0:Math.log2(n));for(let c=0;c<
+o.COLOR_ATTACHMENT0,o.TEXTURE_2D,i,0),{frame:c,texture:i}}),[this.columns,this.rows]=[r,n]}};var yi=3,As=5;function Ts({shape:a,triangles:e},t,r,n){let[s,o]=t.shape,i=new Int8Array(s*o).fill(e?0:Math.log2(n));for(let c=0;c<
 r.length;c+=3){if(Number.isFinite(r[c]))continue;let[l,h]=[Math.floor(c/3/a[1]),c/3%a[1]];for(let u of[Math.floor((l-1)/
 n),Math.floor(l/n)])for(let m of[Math.floor((h-1)/n),Math.floor(h/n)])u>=0&&u<s&&m>=0&&m<o&&(i[u*o+m]=0)}return i}function _s({
 shape:a,data:e},t,r,n,s){let[o,i]=a,c={...t.sight(r),planes:t.planes},l=new Int8Array(o*i).fill(-1),h=[1,1,-1,-1];for(let u=0;u<
-l.length;u+=1){let[m,p]=[Math.floor(u/i),u%i],f=e.subarray(Ts*u,Ts*(u+1));if(n.some(([g,y,x])=>m>=g&&m<g+x&&p>=y&&p<y+x)||
-!Sr(c,f))continue;let b=Math.floor(Math.log2(bi/Tr(c,f)));l[u]=Math.min(Math.max(b,0),s[u]),gi(t,f).forEach((g,y)=>h[y]=
-y<2?Math.min(h[y],g):Math.max(h[y],g))}return{levels:l,box:h}}function gi(a,[e,t,r,n]){let[s,o,i]=a.axes,{parallel:c,position:l,
-focal_point:h}=a.state,u=E([e,t,r],c?h:l),m=[-n,n].map(d=>a.at(T([e,t,r],i,d)).height);if(!(m[0]>0))return[-1,-1,1,1];let[
-p,f]=[-n,n].map(d=>[A(u,s)/a.aspect,A(u,o)].map((b,g)=>m.map(y=>(b+d/(g?1:a.aspect))/y)));return[...p.map(d=>Math.min(...d)),
-...f.map(d=>Math.max(...d))]}var yi=1024,Ps=["u_places","u_depths","u_colours","u_strides","u_below","u_texture"].map(a=>Q.indexOf(a)),wt=class{width=0;height=0;graphics;means;target=null;key="";layers=[];seen=[];squares=0;constructor(e){
+l.length;u+=1){let[m,p]=[Math.floor(u/i),u%i],f=e.subarray(As*u,As*(u+1));if(n.some(([g,y,x])=>m>=g&&m<g+x&&p>=y&&p<y+x)||
+!Sr(c,f))continue;let b=Math.floor(Math.log2(yi/Ar(c,f)));l[u]=Math.min(Math.max(b,0),s[u]),xi(t,f).forEach((g,y)=>h[y]=
+y<2?Math.min(h[y],g):Math.max(h[y],g))}return{levels:l,box:h}}function xi(a,[e,t,r,n]){let[s,o,i]=a.axes,{parallel:c,position:l,
+focal_point:h}=a.state,u=E([e,t,r],c?h:l),m=[-n,n].map(d=>a.at(A([e,t,r],i,d)).height);if(!(m[0]>0))return[-1,-1,1,1];let[
+p,f]=[-n,n].map(d=>[T(u,s)/a.aspect,T(u,o)].map((b,g)=>m.map(y=>(b+d/(g?1:a.aspect))/y)));return[...p.map(d=>Math.min(...d)),
+...f.map(d=>Math.max(...d))]}var vi=1024,Ps=["u_places","u_depths","u_colours","u_strides","u_below","u_texture"].map(a=>Q.indexOf(a)),wt=class{width=0;height=0;graphics;means;target=null;key="";layers=[];seen=[];squares=0;constructor(e){
 this.graphics=e,this.means=new vt(e)}draw({layers:e,camera:t,anchor:r,width:n,height:s}){let o=e.map(({scene:p,covered:f})=>[
 p.number,p.version,f]),i=JSON.stringify([o,t.state,t.aspect,r,n,s]);if(i===this.key)return;Object.assign(this,{key:i,layers:e,
 width:n,height:s});let c=this.graphics.context,{frames:l}=this.make(n,s),[{scene:h}]=e,u=Math.min(...e.map(({key:[p]})=>p))+
@@ -491,7 +491,7 @@ h+1),p=4*([m,m^1,m^2,m^3].find(b=>u[4*b+3])??m),[f,d]=new Float32Array(u.buffer,
 coordinate:[f,d],triangle:u[p+2]}:null}dispose(){let{graphics:e,target:t}=this;for(let r of t?.textures??[])e.free("Text\
 ure",r);for(let r of t?.frames??[])e.free("Framebuffer",r);this.means.dispose(),this.target=null,this.key=""}sendStrides(){
 let{layers:e,seen:t,target:r}=this,n=this.graphics.context,[{scene:s}]=e,{pyramid:o,geometry:i}=s.header,c=i.triangles?[
-1,1]:o?.blocks[0]??s.blocks.shape;this.squares=Math.max(Math.ceil(Math.log2(Math.max(...c)/yi)),0);let l=2**-this.squares,
+1,1]:o?.blocks[0]??s.blocks.shape;this.squares=Math.max(Math.ceil(Math.log2(Math.max(...c)/vi)),0);let l=2**-this.squares,
 [h,u]=c.map(p=>Math.ceil(p*l)),m=new Uint8Array(h*u);e.forEach(({scene:p,key:[f,...d]},b)=>{let g=p.blocks.shape[1],y=2**
 f*l;t[b].levels.forEach((x,v)=>{if(x<0||i.triangles)return;let[[w,M],[P,S]]=[Math.floor(v/g),v%g].map((R,L)=>{let U=(R+d[L]*
 (o?.tileBlocks??0))*y;return[Math.floor(U),Math.min(Math.ceil(U+y),[h,u][L])]});for(let R=w;R<M;R+=1)for(let L=P+R*u;L<S+
@@ -508,11 +508,11 @@ key=o,this.target={frames:b,textures:c,...i}}bind(){let e=this.graphics.context;
 t),e.bindTexture(e.TEXTURE_2D,this.target?.textures[r]??null)}),e.activeTexture(e.TEXTURE0+Q.length)}};function Rs(a,e){var t=e[0],r=e[1],n=e[2],s=e[3],o=e[4],i=e[5],c=t*s-r*n;return c?(c=1/c,a[0]=s*c,a[1]=-r*c,a[2]=-n*c,a[3]=
 t*c,a[4]=(n*i-s*o)*c,a[5]=(r*o-t*i)*c,a):null}function Ls(a){return a[0]*a[3]-a[1]*a[2]}function ks(a,e,t){var r=e[0],n=e[1],
 s=e[2],o=e[3],i=e[4],c=e[5],l=t[0],h=t[1],u=t[2],m=t[3],p=t[4],f=t[5];return a[0]=r*l+s*h,a[1]=n*l+o*h,a[2]=r*u+s*m,a[3]=
-n*u+o*m,a[4]=r*p+s*f+i,a[5]=n*p+o*f+c,a}var vi=14,wi=40,Mi=256;function Os(a,e){a?.clearRect(0,0,e.width,e.height),a?.drawImage(e,0,0)}var Ei=(a,e)=>a.getContext(
+n*u+o*m,a[4]=r*p+s*f+i,a[5]=n*p+o*f+c,a}var Mi=14,Ei=40,Si=256;function Os(a,e){a?.clearRect(0,0,e.width,e.height),a?.drawImage(e,0,0)}var Ai=(a,e)=>a.getContext(
 "2d",{alpha:e}),Mt=class{viewer;content;graphics;canvas;pen;last=document.createElement("canvas");lastPen;lastCamera=null;coarse=document.
 createElement("canvas");coarsePen;front=document.createElement("canvas");frontPen=this.front.getContext("2d");frontLook="";version=1;draftVersion=0;rowsDone=0;layers=[];isRefined=!1;fixed=4;isCoarse=!1;constructor(e,t){
 this.viewer=e,this.content=t,this.graphics=e.graphics,this.canvas=e.canvas;let{canvas:r,last:n,coarse:s}=this,o=[r,n,s].
-map(i=>Ei(i,e.isClear??!1));[this.pen,this.lastPen,this.coarsePen]=o}restart(e=!1){e||(this.lastCamera=null),this.version+=
+map(i=>Ai(i,e.isClear??!1));[this.pen,this.lastPen,this.coarsePen]=o}restart(e=!1){e||(this.lastCamera=null),this.version+=
 1,this.rowsDone=0}refine(){(this.rowsDone>=this.canvas.height||!this.content.isComing)&&(this.rowsDone=0),this.isRefined=
 !0}resize(e,t){let{canvas:r,coarse:n,last:s}=this;n.width=r.width,n.height=r.height,this.coarsePen?.drawImage(r,0,0),r.width=
 s.width=e,r.height=s.height=t,n.width>1&&this.pen?.drawImage(n,0,0,e,t)}dispose(){for(let e of[this.last,this.coarse,this.
@@ -521,14 +521,14 @@ return!1;let s=!1;do s=this.strip(e,t)&&!this.isRefined;while(!s&&performance.no
 viewer.player.playing||this.viewer.isHeld}get leavesOut(){return this.isCoarse&&this.isMoving}arrange(e){this.isRefined=
 !1,this.layers=this.content.arrange(e)}draft(e,t,r){let{width:n,height:s}=this.canvas,o=Number(this.viewer.settings.samples),
 i=r?this.graphics.waiting.size+1:1;this.arrange(t);let c=e.price*this.factor(o),l=this.viewer.player.playing&&!this.viewer.
-isHeld,h=Pn(c,this.fixed,n*s,o,l),u=Math.max(h/i,vi),m=_n(c,this.fixed,n*s,o,u),p=Math.max(Math.round(n*m.scale),1),f=Math.
+isHeld,h=Pn(c,this.fixed,n*s,o,l),u=Math.max(h/i,Mi),m=_n(c,this.fixed,n*s,o,u),p=Math.max(Math.round(n*m.scale),1),f=Math.
 max(Math.round(s*m.scale),1);this.draftVersion=this.version;let d=m.scale<1?this.reuse():null;if(!d?.covers){let g=performance.
 now();this.place(t,p,f);let y=this.sum(e,t,0,f,m.samples);this.show(t,!1,m.samples),this.fixed+=.5*(_(performance.now()-
 g-y,.5,500)-this.fixed)}d&&this.pen&&(this.pen.imageSmoothingEnabled=!d.shifts,this.pen.setTransform(...d.matrix),Os(this.
 pen,this.last),this.pen.setTransform(1,0,0,1,0,0)),this.isCoarse=m.scale<1||m.samples<o;let b=!this.isCoarse&&!this.content.
 smooth;return b&&this.complete(),this.drawLines(t),b&&!this.isRefined}strip(e,t){let{width:r,height:n}=this.canvas,s=Number(
 this.viewer.settings.samples);if(this.rowsDone>=n&&(this.rowsDone=0),this.rowsDone===0&&(this.arrange(t),this.isRefined))
-return!1;this.place(t,r,n);let o=e.price*this.factor(s),i=Math.min(n-this.rowsDone,Rn(wi,o,r,s));return this.sum(e,t,this.
+return!1;this.place(t,r,n);let o=e.price*this.factor(s),i=Math.min(n-this.rowsDone,Rn(Ei,o,r,s));return this.sum(e,t,this.
 rowsDone,i,s),this.rowsDone+=i,this.rowsDone<n?!1:(this.show(t,this.content.smooth,s),this.complete(),this.drawLines(t),
 !0)}drawLines(e){let{front:t,frontPen:r,graphics:n}=this,{camera:s,ratio:o}=this.viewer,{scene:i}=this.content,{width:c,
 height:l}=this.canvas;if(!i||!s||!r)return;let{earth:h,bodies:u}=i;if(!h.lines.length&&!u.labels.length)return;let{state:m,
@@ -539,7 +539,7 @@ frontLook=f}this.pen?.drawImage(t,0,0)}complete(){let{camera:e,player:t}=this.vi
 isCoarse=!1,this.draftVersion=this.version,Os(this.lastPen,this.canvas),e&&!t.playing&&(this.lastCamera=new de(e.state,e.
 limits,e.flat,e.aspect))}reuse(){let{lastCamera:e}=this,{camera:t}=this.viewer,{scene:r}=this.content;if(!r?.header.geometry.
 planar||!t||!e||!t.state.parallel||!e.state.parallel)return null;let{geometry:n}=r.header,s=E(t.state.focal_point,n.center),
-o=F(n.frame,s),[i,c]=[e,t].map(l=>G(n,l,o));return Ai(i,c,this.canvas.width,this.canvas.height)}factor(e){let{settings:t,
+o=F(n.frame,s),[i,c]=[e,t].map(l=>G(n,l,o));return Pi(i,c,this.canvas.width,this.canvas.height)}factor(e){let{settings:t,
 player:r}=this.viewer;return t.motion!=="off"||r.varies&&r.playing?Ln(e):1}placeAt(e,t,r){let{places:n}=this.content;return this.
 place(e,n?.width||this.canvas.width,n?.height||this.canvas.height),n?.at(t,r)??null}place(e,t,r){let{viewer:n,layers:s,content:o}=this,
 {camera:i}=n;if(!i||!s.length)return;let{anchor:c}=n.view(e,this.density(r));o.places?.draw({layers:s,camera:i,anchor:c,
@@ -551,7 +551,7 @@ kn(e.price,d,l*n,s,this.factor(s)),d}isDraft(e,t){return t!==this.viewer.setting
 let{scene:n}=this.content,{camera:s}=this.viewer;if(!n||!s)return;let{height:o}=e,i=this.viewer.view(t,this.density(o)),
 c=this.isDraft(o,r),l=u=>this.values(u,n,s,i,r,c),h=wr(n.header,this.viewer.settings)?Number(l(n).u_grain):null;e.colour(
 h,l)}show(e,t,r){let{places:n}=this.content;if(!n)return;this.colour(n,e,r);let{width:s,height:o}=n,{canvas:i}=this.graphics;
-i.width<s&&(i.width=s),i.height<o&&(i.height=o);let c=t?Mi:o;for(let l=0;l<o;l+=c)this.render(e,l,Math.min(c,o-l),t)}render(e,t,r,n){
+i.width<s&&(i.width=s),i.height<o&&(i.height=o);let c=t?Si:o;for(let l=0;l<o;l+=c)this.render(e,l,Math.min(c,o-l),t)}render(e,t,r,n){
 let{graphics:s,viewer:o}=this,{camera:i}=o,{scene:c,places:l}=this.content;if(!i||!c||!l)return;let h=s.context,{width:u,
 height:m}=l,p=o.view(e,this.density(m));n?s.bindSmooth(u,r):h.bindFramebuffer(h.FRAMEBUFFER,null),h.viewport(0,-t,u,m),h.
 enable(h.SCISSOR_TEST),h.scissor(0,0,u,r),h.enable(h.DEPTH_TEST),h.depthFunc(h.LESS),h.disable(h.BLEND),h.disable(h.CULL_FACE);
@@ -570,24 +570,24 @@ l.before],u_colour:e.colour,u_lit:e.lighting,u_ground:e.background??[1,1,1],u_op
 e.geometry.frame,k(r.axes[2],-1))}}copy(e,t,r,n){let{pen:s}=this;if(!s)return;let{canvas:o}=this.graphics,i=o.height-n,[
 c,l]=[this.canvas.width,this.canvas.height/t];if(s.imageSmoothingEnabled=c!==e||l!==1,s.imageSmoothingEnabled){let{coarse:u,
 coarsePen:m}=this;u.width=e,u.height=n,m?.drawImage(o,0,i,e,n,0,0,e,n),[o,i]=[u,0]}let h=(t-r-n)*l;s.clearRect(0,h,c,n*l),
-s.drawImage(o,0,i,e,n,0,h,c,n*l)}},Si=4,Ti=.3,kr=1e-6,Fs=(a,e)=>ks([0,0,0,0,0,0],a,e),Ns=a=>Rs([0,0,0,0,0,0],a);function Ai(a,e,t,r){
+s.drawImage(o,0,i,e,n,0,h,c,n*l)}},Ti=4,_i=.3,kr=1e-6,Fs=(a,e)=>ks([0,0,0,0,0,0],a,e),Ns=a=>Rs([0,0,0,0,0,0],a);function Pi(a,e,t,r){
 let[n,s]=[t/2,r/2],o=M=>Fs([n,0,0,-s,n,s],[M[0],M[1],M[4],M[5],M[12],M[13]]),i=Fs(o(e),Ns(o(a))),c=Math.abs(Ls(i));if(!(c>
-Ti**2&&c<Si**2))return null;let[l,h,u,m,p,f]=Ns(i),d=([M,P])=>Math.abs((l*M+u*P+p)/n-1)<1+kr&&Math.abs((h*M+m*P+f)/s-1)<
+_i**2&&c<Ti**2))return null;let[l,h,u,m,p,f]=Ns(i),d=([M,P])=>Math.abs((l*M+u*P+p)/n-1)<1+kr&&Math.abs((h*M+m*P+f)/s-1)<
 1+kr,b=[[0,0],[t,0],[0,r],[t,r]].every(d),[g,y,x,v]=i,w=Math.abs(g-1)+Math.abs(v-1)+Math.abs(y)+Math.abs(x)<kr;if(w)for(let M of[
-4,5])i[M]=Math.round(i[M]);return{matrix:i,covers:b,shifts:w}}var At=4,_t=class{surface;limits;sums;whole=[[]];last=null;constructor(e,t){this.surface=e,this.limits=t;let r=0;this.sums=
-Float64Array.from({length:e.corners.length/At},(n,s)=>r+=this.area(Or(s)))}seen(e,t){return(!this.last||!this.covers(this.
+4,5])i[M]=Math.round(i[M]);return{matrix:i,covers:b,shifts:w}}var Tt=4,_t=class{surface;limits;sums;whole=[[]];last=null;constructor(e,t){this.surface=e,this.limits=t;let r=0;this.sums=
+Float64Array.from({length:e.corners.length/Tt},(n,s)=>r+=this.area(Or(s)))}seen(e,t){return(!this.last||!this.covers(this.
 last.wanted,[e,t]))&&(this.last={wanted:[e,t],seeds:this.make([e,t])}),this.last.seeds}position(e,t){let{nodes:r,corners:n}=this.
-surface;return Ie(r,n.subarray(At*e,At*(e+1)),t,3)}point(e){let{frame:t,center:r}=this.surface.geometry;return T(K(t,e),
-r)}covers([e,t],[r,n]){let{closer:s}=this.limits;return this.cornersOf(r).every(o=>s*t*Tt(e,o)<=n*Tt(r,o)&&this.sees(e,o,
+surface;return Ie(r,n.subarray(Tt*e,Tt*(e+1)),t,3)}point(e){let{frame:t,center:r}=this.surface.geometry;return A(K(t,e),
+r)}covers([e,t],[r,n]){let{closer:s}=this.limits;return this.cornersOf(r).every(o=>s*t*At(e,o)<=n*At(r,o)&&this.sees(e,o,
 0))}cornersOf({planes:e}){let{center:t,extent:r}=this.surface.geometry,n=c=>e[c].slice(0,3),s=N(n(0),n(2)),o=.5*r*O(s);return[
-0,1].flatMap(c=>[2,3].flatMap(l=>[-1,1].map(h=>[c,l,h]))).map(([c,l,h])=>{let[u,m]=[n(c),n(l)],p=T(k(N(m,s),-e[c][3]),N(
-s,u),-e[l][3]),f=N(u,m);return k(T(p,f,A(s,t)+h*o),1/A(f,s))})}sees(e,t,r){let n=r+this.limits.around*e.pixels*Tt(e,t);return e.
-planes.every(s=>A(s,t)+s[3]>=-n*O(s))}make(e){let[t,r]=e,{limits:n,sums:s,whole:o}=this,{extent:i,center:c}=this.surface.
+0,1].flatMap(c=>[2,3].flatMap(l=>[-1,1].map(h=>[c,l,h]))).map(([c,l,h])=>{let[u,m]=[n(c),n(l)],p=A(k(N(m,s),-e[c][3]),N(
+s,u),-e[l][3]),f=N(u,m);return k(A(p,f,T(s,t)+h*o),1/T(f,s))})}sees(e,t,r){let n=r+this.limits.around*e.pixels*At(e,t);return e.
+planes.every(s=>T(s,t)+s[3]>=-n*O(s))}make(e){let[t,r]=e,{limits:n,sums:s,whole:o}=this,{extent:i,center:c}=this.surface.
 geometry,l=s[s.length-1]??0,h=t.eye?Math.max(O(E(c,t.eye))-.5*i,0):1,u=n.closer*r*Fr(t,h),m=i,p=o[0],f=null;for(let d=0;d<
 n.mostOctaves;d+=1){let b=n.candidateArea*m**2;if(l<=n.mostCandidates*b)o[d+1]??=this.grown(p,this.spread(d,b),m),p=o[d+
 1];else{f??=Array.from(s,(y,x)=>Or(x)),f=this.divided(f.filter(y=>this.isNeeded(y,e,m)),b);let g=f.flatMap(y=>{let x=le(
 y.key+d);return St(x)*b<this.area(y)?[this.candidate(y,x)]:[]});if(p=this.grown(p,g,m),!f.length)break}if(m<=u)break;m*=
-n.octave}return p.filter(d=>{let b=this.point(d.position);return d.radius>=n.closer*r*Tt(t,b)&&this.sees(t,b,0)})}spread(e,t){
+n.octave}return p.filter(d=>{let b=this.point(d.position);return d.radius>=n.closer*r*At(t,b)&&this.sees(t,b,0)})}spread(e,t){
 let{sums:r}=this,n=le(e+Et),s=0;return Array.from({length:Math.floor((r[r.length-1]??0)/t)},(o,i)=>{let c=le(n+i),l=(i+St(
 c))*t;for(;s<r.length-1&&r[s]<=l;)s+=1;return this.candidate(Or(s),c)})}candidate({cell:e,low:t,size:r},n){let s=le(n+Et),
 o=le(s+Et),i=[t[0]+r[0]*St(s),t[1]+r[1]*St(o)];return{cell:e,place:i,position:this.position(e,i),radius:1/0}}grown(e,t,r){
@@ -597,22 +597,22 @@ l.position)),l.radius<r?!1:(i.add(l.position),!0)));return[...e,...c]}isNeeded(e
 limits,{cell:c,low:l,size:h}=e,u=this.point(this.position(c,[l[0]+.5*h[0],l[1]+.5*h[1]])),[m,p]=this.sides(e),f=.5*(O(m)+
 O(p)),d=Math.max(Us(t,u)-f,0);return!(n<s*o*r*Fr(t,d))&&this.sees(t,u,f+i*n)}divided(e,t){let r=e.filter(o=>this.area(o)>
 t);if(!r.length)return e;let n=r.map(o=>{let[i,c]=this.sides(o),l=O(c)>O(i)?1:0,h=[...o.size];h[l]*=.5;let u=[...o.low];
-return u[l]+=h[l],[{...o,size:h,key:le(o.key+Et)},{...o,size:h,low:u,key:le(o.key+_i)}]}),s=e.filter(o=>this.area(o)<=t);
+return u[l]+=h[l],[{...o,size:h,key:le(o.key+Et)},{...o,size:h,low:u,key:le(o.key+Ri)}]}),s=e.filter(o=>this.area(o)<=t);
 return this.divided([...s,...n.map(([o])=>o),...n.map(([,o])=>o)],t)}sides({cell:e,low:t,size:r}){let n=(s,o)=>this.position(
 e,[t[0]+r[0]*s,t[1]+r[1]*o]);return[E(n(1,.5),n(0,.5)),E(n(.5,1),n(.5,0))]}area(e){return O(N(...this.sides(e)))}};function Ie(a,e,[
-t,r],n){let s=[(1-r)*(1-t),(1-r)*t,r*(1-t),r*t],o=new Array(n).fill(0);for(let i=0;i<At;i+=1)for(let c=0;c<n;c+=1)o[c]+=
+t,r],n){let s=[(1-r)*(1-t),(1-r)*t,r*(1-t),r*t],o=new Array(n).fill(0);for(let i=0;i<Tt;i+=1)for(let c=0;c<n;c+=1)o[c]+=
 s[i]*a[n*e[i]+c];return o}var Pt=class{most;cubes=new Map;constructor(e){this.most=e}cube(e){return e.map(t=>Math.floor(
 t/this.most))}add(e){let t=Cs(...this.cube(e)),r=this.cubes.get(t);r?r.push(e):this.cubes.set(t,[e])}distance(e){let[t,r,
 n]=this.cube(e),s=this.most;for(let o=0;o<27;o+=1){let i=Cs(t+o%3-1,r+Math.floor(o/3)%3-1,n+Math.floor(o/9)-1);for(let c of this.
-cubes.get(i)??[])s=Math.min(s,O(E(e,c)))}return s}},Et=2654435769,_i=2246822507,Pi=[739982445,695872825],Is=15;function Cs(a,e,t){
-return Math.imul(a,2376512323)^Math.imul(e,3625334849)^Math.imul(t,3407524639)}function le(a){let e=a>>>0;for(let t of Pi)
+cubes.get(i)??[])s=Math.min(s,O(E(e,c)))}return s}},Et=2654435769,Ri=2246822507,Li=[739982445,695872825],Is=15;function Cs(a,e,t){
+return Math.imul(a,2376512323)^Math.imul(e,3625334849)^Math.imul(t,3407524639)}function le(a){let e=a>>>0;for(let t of Li)
 e=Math.imul(e^e>>>Is,t)>>>0;return(e^e>>>Is)>>>0}var St=a=>a/2**32;function Or(a){return{cell:a,low:[0,0],size:[1,1],key:le(
-a)}}var Us=({eye:a},e)=>a?O(E(e,a)):1,Fr=({halfHeight:a,pixels:e},t)=>2*a/e*t,Tt=(a,e)=>Fr(a,Us(a,e));var Bs=[[0,3],[1,2],[2,3],[3,2],[4,3],[5,1]],Vs=4,Ri=Bs.reduce((a,[,e])=>a+e,0),Li=(a,e)=>a.length===e.length&&a.every((t,r)=>t===
+a)}}var Us=({eye:a},e)=>a?O(E(e,a)):1,Fr=({halfHeight:a,pixels:e},t)=>2*a/e*t,At=(a,e)=>Fr(a,Us(a,e));var Bs=[[0,3],[1,2],[2,3],[3,2],[4,3],[5,1]],Vs=4,ki=Bs.reduce((a,[,e])=>a+e,0),Oi=(a,e)=>a.length===e.length&&a.every((t,r)=>t===
 e[r]),Ds=({tile:a})=>a?.[0]??1/0,Rt=class{graphics;header;parts;seeds=null;array=null;buffer=null;known=null;last=null;drawn=null;constructor(e,t,r){
 this.graphics=e,this.header=t,this.parts=r}program(e,t){let{shaders:r,geometry:n}=this.header;if(!Le(this.header,e))return null;
 let s=t&&!n.triangles?["FLOWTEX_CELLS"]:[];return this.graphics.programs.get(r.arrowVertex,r.arrowFragment,...s)}share(e,t,r){
 let{header:n,last:s}=this;this.seeds??=new _t(this.surface,n.constants.arrows);let o=this.seeds.seen(e,Mr(n,t));if(s?.seeds===
-o&&Li(r,s.layers))return s.shared;let{corners:i}=this.surface,c=o.map(({cell:u,place:m,radius:p})=>{let f=i.subarray(4*u,
+o&&Oi(r,s.layers))return s.shared;let{corners:i}=this.surface,c=o.map(({cell:u,place:m,radius:p})=>{let f=i.subarray(4*u,
 4*u+4);return{corners:f,place:m,radius:p,cell:n.geometry.triangles?u:f[0]}}),l=new Map(r.map(u=>[u,[]])),h=[...r].sort((u,m)=>Ds(
 u)-Ds(m));for(let u of c)for(let m of h){let p=m.tile?this.inTile(u,m,m.tile):u;if(p){l.get(m)?.push(p);break}}return this.
 last={seeds:o,layers:r,shared:l},l}draw(e,t,r,n,s){let{graphics:o}=this,i=o.context;this.array??=this.make(),i.bindVertexArray(
@@ -629,17 +629,17 @@ M?null:[R,S-R]},b=d(e[0]%f+t[0],1,i,p-1),g=d(Math.floor(e[0]/f)+t[1],0,o,m-1);if
 (p-1)+b[0]]===0)return null;let y=g[0]*p+b[0];return{corners:[y,y+1,y+p,y+p+1],place:[b[1],g[1]],radius:r,cell:y}}make(){
 let e=this.graphics.context,t=this.graphics.counted(e.createVertexArray());this.buffer=this.graphics.counted(e.createBuffer()),
 e.bindVertexArray(t),e.bindBuffer(e.ARRAY_BUFFER,this.buffer);let r=0;for(let[n,s]of Bs)e.enableVertexAttribArray(n),e.vertexAttribPointer(
-n,s,e.FLOAT,!1,Ri*Vs,r),e.vertexAttribDivisor(n,1),r+=s*Vs;return t}numbers(e,t,r){let{geometry:n,scalars:s}=this.header,
+n,s,e.FLOAT,!1,ki*Vs,r),e.vertexAttribDivisor(n,1),r+=s*Vs;return t}numbers(e,t,r){let{geometry:n,scalars:s}=this.header,
 o=t.map(h=>this.parts.get(h)?.data??new Float32Array),i=bt(o,s),c=this.nodes,l=n.triangles?null:Kn(n);return Float32Array.
 from(e.flatMap(({corners:h,place:u,radius:m,cell:p})=>{let[f,d]=u,[b,g,y,x]=Array.from(h,w=>[...c.subarray(3*w,3*w+3)]),
-v=N(E(T(g,x),T(b,y)),E(T(y,x),T(b,g)));return[...E(Ie(c,h,u,3),r),...l?Ie(l,h,u,2):[f*(1-d),d],...C(v),...s.flat?i.subarray(
+v=N(E(A(g,x),A(b,y)),E(A(y,x),A(b,g)));return[...E(Ie(c,h,u,3),r),...l?Ie(l,h,u,2):[f*(1-d),d],...C(v),...s.flat?i.subarray(
 2*p,2*p+2):Ie(i,h,u,2),...Array.from(h).slice(0,3),m]}))}get nodes(){return this.parts.get("position")?.data??new Float32Array}get surface(){
 return this.known??={geometry:this.header.geometry,nodes:this.nodes,corners:this.corners()}}corners(){let{geometry:e}=this.
 header,[t,r]=e.shape,n=[];if(e.triangles){let o=this.parts.get("triangles")?.data??[];for(let i=0;i<o.length;i+=3)n.push(
 o[i],o[i+1],o[i+2],o[i+2]);return Uint32Array.from(n)}let s=this.parts.get("cells")?.data;for(let o=0;o<(t-1)*(r-1);o+=1){
-if(s&&!s[o])continue;let i=o+Math.floor(o/(r-1));n.push(i,i+1,i+r,i+r+1)}return Uint32Array.from(n)}};var Ce=["bodyPoints","bodyNormals","bodyColours","bodyFaces","bodyPieces"],Hs=8,[ki,Oi]=[24,8],Ae=[1,2],Fi=.2;function Ue(a,e,t){
-let r=a.constructor,n=new r(t*e.length);for(let s=0;s<e.length;s+=1)for(let o=0;o<t;o+=1)n[t*s+o]=a[t*e[s]+o];return n}function Ni({
-geometry:a,bodies:e},t){let[r,n,s]=t.axes,o=(e?.lights??[]).slice(0,Hs),i=o.map(({way:l,turns:h})=>{let u=T(T(k(r,l[0]),
+if(s&&!s[o])continue;let i=o+Math.floor(o/(r-1));n.push(i,i+1,i+r,i+r+1)}return Uint32Array.from(n)}};var Ce=["bodyPoints","bodyNormals","bodyColours","bodyFaces","bodyPieces"],Hs=8,[Fi,Ni]=[24,8],Te=[1,2],Ii=.2;function Ue(a,e,t){
+let r=a.constructor,n=new r(t*e.length);for(let s=0;s<e.length;s+=1)for(let o=0;o<t;o+=1)n[t*s+o]=a[t*e[s]+o];return n}function Ci({
+geometry:a,bodies:e},t){let[r,n,s]=t.axes,o=(e?.lights??[]).slice(0,Hs),i=o.map(({way:l,turns:h})=>{let u=A(A(k(r,l[0]),
 n,l[1]),s,-l[2]);return F(a.frame,h?u:l)}),c=l=>Float32Array.from({length:3*Hs},(h,u)=>l.flat()[u]??0);return{u_lightWays:c(
 i),u_lightColours:c(o.map(({color:l})=>l))}}var Lt=class{graphics;header;parts;drawn=null;constructor(e,t,r){this.graphics=
 e,this.header=t,this.parts=r}get labels(){return this.header.bodies?.labels??[]}get runs(){let{bodies:e}=this.header;return e&&
@@ -648,25 +648,25 @@ let{programs:e}=this.graphics,{bodyVertex:t,bodyFragment:r,lineVertex:n,lineFrag
 t,r),e.get(n,s,"FLOWTEX_BODY"),e.get(t,r,"FLOWTEX_HIDING")]}get isReady(){return!this.runs.length||this.programs.every(({
 ready:e})=>e)}dispose(){let{drawn:e,graphics:t}=this;if(e){for(let r of e.buffers)t.free("Buffer",r);t.free("VertexArray",
 e.faces),t.free("VertexArray",e.pieces),this.drawn=null}}seeThrough(e,t=this.areBehind){if(!this.runs.length)return e();
-let r=this.graphics.context;r.enable(r.POLYGON_OFFSET_FILL),r.polygonOffset(Ae[0],Ae[0]),t&&(r.enable(r.BLEND),r.blendColor(
+let r=this.graphics.context;r.enable(r.POLYGON_OFFSET_FILL),r.polygonOffset(Te[0],Te[0]),t&&(r.enable(r.BLEND),r.blendColor(
 0,0,0,this.header.opacity),r.blendFuncSeparate(r.CONSTANT_ALPHA,r.ONE_MINUS_CONSTANT_ALPHA,r.ZERO,r.ONE)),e(),r.disable(
 r.BLEND),r.disable(r.POLYGON_OFFSET_FILL)}draw({camera:e,anchor:t,width:r,height:n,ratio:s},o){let i=o==="clear",c=this.
 runs.filter(({clear:P})=>P===i);if(!c.length)return;let{header:l,graphics:h}=this,{geometry:u}=l,m=h.context,[p,f]=this.
 programs,d=this.drawn??=this.make(),b=G(u,e,t),[g,y,x,v]=e.eye,w=F(u.frame,E([g,y,x],k(u.center,v)));i&&(m.enable(m.BLEND),
 m.blendFuncSeparate(m.SRC_ALPHA,m.ONE_MINUS_SRC_ALPHA,m.ZERO,m.ONE),m.depthMask(!1)),h.programs.use(p,{u_matrix:b,u_anchor:t,
-u_eye:[...E(w,k(t,v)),v],...Ni(l,e)}),m.bindVertexArray(d.faces),m.enable(m.POLYGON_OFFSET_FILL),m.polygonOffset(Ae[1],Ae[1]);
+u_eye:[...E(w,k(t,v)),v],...Ci(l,e)}),m.bindVertexArray(d.faces),m.enable(m.POLYGON_OFFSET_FILL),m.polygonOffset(Te[1],Te[1]);
 for(let{faces:[P,S],ambient:R,diffuse:L}of c)S&&(h.programs.use(p,{u_ambient:R,u_diffuse:L}),m.drawElements(m.TRIANGLES,
 3*S,m.UNSIGNED_INT,12*P));m.disable(m.POLYGON_OFFSET_FILL);let M={u_matrix:b,u_anchor:t,u_picture:[r,n],u_horizon:[0,0,0,
 1]};h.programs.use(f,M),m.bindVertexArray(d.pieces);for(let{pieces:[P,S],width:R}of c)if(S){h.programs.use(f,{u_width:R*
-s});for(let[L,U,I,J,ae]of[[d.ends,3,m.FLOAT,ki,0],[d.colours,4,m.UNSIGNED_BYTE,Oi,2]]){m.bindBuffer(m.ARRAY_BUFFER,L);for(let V of[
+s});for(let[L,U,I,J,ae]of[[d.ends,3,m.FLOAT,Fi,0],[d.colours,4,m.UNSIGNED_BYTE,Ni,2]]){m.bindBuffer(m.ARRAY_BUFFER,L);for(let V of[
 0,1])m.vertexAttribPointer(ae+V,U,I,U===4,J,J*(P+V/2))}m.drawArraysInstanced(m.TRIANGLE_STRIP,0,4,S)}m.bindVertexArray(null),
 m.depthMask(!0),m.disable(m.BLEND)}hide(e,t){let{runs:r,graphics:n}=this;if(!r.length)return;let s=n.context,o=this.drawn??=
-this.make();s.enable(s.POLYGON_OFFSET_FILL),s.polygonOffset(Ae[1],Ae[1]),n.programs.use(this.programs[2],{u_matrix:e,u_anchor:t}),
+this.make();s.enable(s.POLYGON_OFFSET_FILL),s.polygonOffset(Te[1],Te[1]),n.programs.use(this.programs[2],{u_matrix:e,u_anchor:t}),
 s.bindVertexArray(o.faces);for(let{faces:[i,c],clear:l}of r)l||s.drawElements(s.TRIANGLES,3*c,s.UNSIGNED_INT,12*i);s.disable(
 s.POLYGON_OFFSET_FILL),s.bindVertexArray(null)}drawLabels(e,{camera:t,anchor:r,width:n,height:s,ratio:o}){let{geometry:i}=this.
 header,c=G(i,t,r);for(let{text:l,position:h,size:u,color:m,plate:p}of this.labels){let f=E(F(i.frame,E(h,i.center)),r),[
 d,b,,g]=[0,1,2,3].map(S=>c[S]*f[0]+c[4+S]*f[1]+c[8+S]*f[2]+c[12+S]);if(g<=0)continue;let[y,x]=[(.5+.5*d/g)*n,(.5-.5*b/g)*
-s],v=u*o,w=Fi*v;e.font=`600 ${v}px system-ui, sans-serif`,e.textBaseline="middle";let[M,P]=[e.measureText(l).width+2*w,v+
+s],v=u*o,w=Ii*v;e.font=`600 ${v}px system-ui, sans-serif`,e.textBaseline="middle";let[M,P]=[e.measureText(l).width+2*w,v+
 2*w];e.fillStyle=Gs(p),e.beginPath(),e.roundRect(y,x-P,M,P,w),e.fill(),e.fillStyle=Gs(m),e.fillText(l,y+w,x-.5*P)}}make(){
 let{graphics:e,parts:t}=this,r=e.context,[n,s,o,i,c]=Ce.map(g=>t.get(g)?.data??[]),l=()=>{let g=e.counted(r.createVertexArray());
 return r.bindVertexArray(g),g},h=(g,y=r.ARRAY_BUFFER)=>{let x=e.counted(r.createBuffer());return r.bindBuffer(y,x),r.bufferData(
@@ -674,15 +674,15 @@ y,g,r.STATIC_DRAW),x},u=l(),p=[[n,3,r.FLOAT],[s,3,r.BYTE],[o,4,r.UNSIGNED_BYTE]]
 v),r.vertexAttribPointer(v,y,x,x!==r.FLOAT,0,0),w});p.push(h(i,r.ELEMENT_ARRAY_BUFFER));let f=l(),d=h(Ue(n,c,3)),b=h(Ue(
 o,c,4));for(let g=0;g<4;g+=1)r.enableVertexAttribArray(g),r.vertexAttribDivisor(g,1);return r.bindVertexArray(null),{faces:u,
 pieces:f,ends:d,colours:b,buffers:[...p,d,b]}}};function Gs([a,e,t,r=1]){return`rgb(${[a,e,t].map(n=>Math.round(255*n)).
-join(" ")} / ${r})`}var kt=["land","missing"];var Ii=.18;function zs({background:a,earth:e}){let t=a??[1,1,1],r=e?.missingShare??0,n=A(t.map(s=>s**2.2),[.2126,.7152,.0722])>=
-Ii?0:1;return t.map(s=>s*(1-r)+n*r)}var Ys=1e30,Ws=65535,$s=256;function Ci(a,{low:e,size:t}){let r=[],n=[0,0,0];for(let s=0;s<a.length;s+=4){a[s+3]&&r.push(
-[]);let o=n.map((i,c)=>(n[c]=n[c]+a[s+c]&Ws,e[c]+n[c]/Ws*t[c]));r[r.length-1].push(o)}return r}function Ui(a,e){return e?
+join(" ")} / ${r})`}var kt=["land","missing"];var Ui=.18;function zs({background:a,earth:e}){let t=a??[1,1,1],r=e?.missingShare??0,n=T(t.map(s=>s**2.2),[.2126,.7152,.0722])>=
+Ui?0:1;return t.map(s=>s*(1-r)+n*r)}var Ys=1e30,Ws=65535,$s=256;function Vi(a,{low:e,size:t}){let r=[],n=[0,0,0];for(let s=0;s<a.length;s+=4){a[s+3]&&r.push(
+[]);let o=n.map((i,c)=>(n[c]=n[c]+a[s+c]&Ws,e[c]+n[c]/Ws*t[c]));r[r.length-1].push(o)}return r}function Di(a,e){return e?
 a.flatMap(t=>{let r=0,n=t.filter((s,o)=>{let i=r;return o&&(r+=Math.hypot(...s.map((l,h)=>l-t[o-1][h]))),Math.floor(r/e)>
-Math.floor(i/e)||o===0||o===t.length-1});return r<e?[]:[n]}):a}function Vi(a,e){let t=a.reduce((s,o)=>s+o.length+1,0),r=new Float32Array(
-3*t).fill(Ys),n=0;for(let s of a){n+=3;for(let o of s)for(let i=0;i<3;i+=1)r[n++]=o[i]-e[i]}return r}function Di(a){let e=[],
+Math.floor(i/e)||o===0||o===t.length-1});return r<e?[]:[n]}):a}function Bi(a,e){let t=a.reduce((s,o)=>s+o.length+1,0),r=new Float32Array(
+3*t).fill(Ys),n=0;for(let s of a){n+=3;for(let o of s)for(let i=0;i<3;i+=1)r[n++]=o[i]-e[i]}return r}function Hi(a){let e=[],
 t=a.length/3-1;for(let r=0;r<t;r+=$s){let n=Math.min($s,t-r),[s,o]=[[1/0,1/0,1/0],[-1/0,-1/0,-1/0]];for(let l=3*r;l<3*(r+
 n+1);l+=1)a[l]!==Math.fround(Ys)&&(s[l%3]=Math.min(s[l%3],a[l]),o[l%3]=Math.max(o[l%3],a[l]));let i=s.map((l,h)=>(l+o[h])/
-2),c=Math.hypot(...s.map((l,h)=>(o[h]-l)/2));e.push({first:r,count:n,middle:i,radius:c})}return e}function Bi(a,e){let t=[];
+2),c=Math.hypot(...s.map((l,h)=>(o[h]-l)/2));e.push({first:r,count:n,middle:i,radius:c})}return e}function Gi(a,e){let t=[];
 for(let{first:r,count:n,middle:[s,o,i],radius:c}of a){let l=([u,m,p,f])=>u*s+m*o+p*i+f<-c*Math.hypot(u,m,p);if(e.some(l))
 continue;let h=t[t.length-1];h&&h[0]+h[1]===r?h[1]+=n:t.push([r,n])}return t}var js=12,Xs=2;var Ot=class{version=0;graphics;header;parts;drawn=new Map;constructor(e,t,r){this.graphics=e,this.header=t,this.parts=r}forget(e){
 this.version+=1;for(let t of e==="position"?kt:[e])this.drop(t)}dispose(){for(let e of[...this.drawn.keys()])this.drop(e)}drop(e){
@@ -695,7 +695,7 @@ c.enable(c.SCISSOR_TEST),c.scissor(0,0,u,m),c.disable(c.DEPTH_TEST),c.enable(c.B
 p/s.usualHeight),...s.widthRange),x=s.spacingPixels*g,v=s.spacings.find(w=>w<=x)??0;for(let{option:w,color:M,opacity:P,width:S}of s.
 strokes){if(!this.lines.includes(w))continue;c.clear(c.COLOR_BUFFER_BIT);let R=this.take(w,h,()=>this.linesOf(w,h,v),v);
 n.programs.use(i,{u_matrix:G(r.geometry,l,h),u_picture:[u,m],u_width:S*y*p,u_lineColour:[...M,P],u_horizon:f?b[b.length-
-1]:[0,0,0,1]}),c.bindVertexArray(R.array),c.bindBuffer(c.ARRAY_BUFFER,R.buffers[0]);for(let[L,U]of Bi(R.groups,b)){for(let I=0;I<
+1]:[0,0,0,1]}),c.bindVertexArray(R.array),c.bindBuffer(c.ARRAY_BUFFER,R.buffers[0]);for(let[L,U]of Gi(R.groups,b)){for(let I=0;I<
 Xs;I+=1)c.vertexAttribPointer(I,3,c.FLOAT,!1,js,(L+I)*js);c.drawArraysInstanced(c.TRIANGLE_STRIP,0,4,U)}t()}c.bindVertexArray(
 null),c.blendEquation(c.FUNC_ADD),c.disable(c.BLEND)}get isReady(){let{lineVertex:e,lineFragment:t}=this.header.shaders,
 {earth:r}=this.header;return r?.land&&(r.map===null&&r.below&&!this.groundProgram("FLOWTEX_GLOBE").ready||this.hasCells&&
@@ -711,24 +711,24 @@ let f=p==="land"?s.land:u,d=E(F(o.frame,k(o.center,-1)),t);n.programs.use(m,{...
 take(p,t,()=>this.cellsOf(p,t));l.bindVertexArray(b.array),l.drawElements(l.TRIANGLES,b.count,l.UNSIGNED_INT,0)}l.depthMask(
 !0),l.bindVertexArray(null)}horizon(e){let{earth:t}=this.header;if(!t||t.map)return null;let{radius:r}=t,[n,s,o,i]=e.eye,
 c=i*Math.hypot(n,s,o);return[...C([n,s,o]),c?-(r**2)/c:0]}localPlane(e,t){let{frame:r,center:n}=this.header.geometry,s=e.
-slice(0,3),o=F(r,s);return[...o,A(o,t)+A(s,n)+e[3]]}disc(e,t,r){let{frame:n,center:s}=this.header.geometry,[o,i,c,l]=this.
-horizon(e)??[0,0,1,0],h=[o,i,c],u=Math.sqrt(Math.max(t**2-l**2,0)),m=C(N(e.axes[1],h)),p=N(h,m),f=T(k(h,-l),s,-1);return{
+slice(0,3),o=F(r,s);return[...o,T(o,t)+T(s,n)+e[3]]}disc(e,t,r){let{frame:n,center:s}=this.header.geometry,[o,i,c,l]=this.
+horizon(e)??[0,0,1,0],h=[o,i,c],u=Math.sqrt(Math.max(t**2-l**2,0)),m=C(N(e.axes[1],h)),p=N(h,m),f=A(k(h,-l),s,-1);return{
 u_middle:E(F(n,f),r),u_aside:k(F(n,m),u),u_upward:k(F(n,p),u),u_away:e.state.parallel?0:O(e.state.position)/t}}take(e,t,r,n=0){
 let s=this.drawn.get(e);if(s&&String([s.anchor,s.spacing])===String([t,n]))return s;this.drop(e);let o={...r(),anchor:t,
 spacing:n};return this.drawn.set(e,o),o}emptyArray(){let{graphics:e}=this;return{array:e.counted(e.context.createVertexArray()),
 buffers:[],anchor:[0,0,0],spacing:0,count:0,groups:[]}}buffer(e,t){let{graphics:r}=this,n=r.context,s=r.counted(n.createBuffer());
 return n.bindBuffer(e,s),n.bufferData(e,t,n.STATIC_DRAW),s}linesOf(e,t,r){let n=this.graphics.context,{earth:s}=this.header,
-o=this.parts.get(e)?.data??[],i=s?Ci(o,s):[],c=Vi(Ui(i,r),t),l={...this.emptyArray(),groups:Di(c)};n.bindVertexArray(l.array),
+o=this.parts.get(e)?.data??[],i=s?Vi(o,s):[],c=Bi(Di(i,r),t),l={...this.emptyArray(),groups:Hi(c)};n.bindVertexArray(l.array),
 l.buffers=[this.buffer(n.ARRAY_BUFFER,c)];for(let h=0;h<Xs;h+=1)n.enableVertexAttribArray(h),n.vertexAttribDivisor(h,1);
 return l}cellsOf(e,t){let r=this.graphics.context,n=this.parts.get(e),s=this.parts.get("position"),o=this.emptyArray();if(!n||
-!s)return o;let i=this.header.geometry.triangles?n.data:Hi(n);r.bindVertexArray(o.array);let c=dt(s.data,t);return o.buffers=
+!s)return o;let i=this.header.geometry.triangles?n.data:zi(n);r.bindVertexArray(o.array);let c=dt(s.data,t);return o.buffers=
 [this.buffer(r.ARRAY_BUFFER,c),this.buffer(r.ELEMENT_ARRAY_BUFFER,i)],o.count=i.length,r.enableVertexAttribArray(0),r.vertexAttribPointer(
-0,3,r.FLOAT,!1,0,0),o}};function Hi({data:a,shape:[e,t]}){let r=[];for(let n=0;n<e*t;n+=1){if(!a[n])continue;let s=n+Math.
-floor(n/t),o=s+t+1;r.push(s,s+1,o+1,s,o+1,o)}return Uint32Array.from(r)}var[Gi,zi]=[.01,.2],[ne,qs]=[4,24],Ks=9;function Js(a,e,t){let r={lines:{"from saddle":[],"to saddle":[],"stable orbit":[],
+0,3,r.FLOAT,!1,0,0),o}};function zi({data:a,shape:[e,t]}){let r=[];for(let n=0;n<e*t;n+=1){if(!a[n])continue;let s=n+Math.
+floor(n/t),o=s+t+1;r.push(s,s+1,o+1,s,o+1,o)}return Uint32Array.from(r)}var[Wi,$i]=[.01,.2],[ne,qs]=[4,24],Ks=9;function Js(a,e,t){let r={lines:{"from saddle":[],"to saddle":[],"stable orbit":[],
 "unstable orbit":[]},points:[]};for(let s=0;s<Math.min(a.length/ne,t.points);s+=1){let o=a[ne*s+3];(r.points[o]??=[]).push(
 ...[0,1,2].map(i=>a[ne*s+i]))}let n=NaN;for(let s=0;s<e.length/ne;s+=1){let o=e[ne*s+3];if(o>=et.saddle*t.saddles)continue;
 let i=o&et.orbit?["stable orbit","unstable orbit"]:["from saddle","to saddle"],c=r.lines[i[o&et.leaving?0:1]];o!==n&&c.push(
-[]),n=o,c[c.length-1].push(...[0,1,2].map(l=>e[ne*s+l]))}return r}function Wi(a,e){let t=[];for(let r=0;r<a.length;r+=ne)
+[]),n=o,c[c.length-1].push(...[0,1,2].map(l=>e[ne*s+l]))}return r}function ji(a,e){let t=[];for(let r=0;r<a.length;r+=ne)
 a[r+3]===e&&t.push(a[r],a[r+1],a[r+2]);return Float32Array.from(t)}function Ve(a,e=!1){let t=Float32Array.from(a.flat());
 if(e)return Ue(t,Array.from({length:2*t.length/3},(s,o)=>o>>1),3);let r=[],n=0;for(let s of a){let o=s.length/3;for(let i=n;i<
 n+o-1;i+=1)r.push(i,i+1);n+=o}return Ue(t,r,3)}var Ft=class{graphics;header;parts;array=null;buffer=null;drawn=null;constructor(e,t,r){
@@ -746,12 +746,12 @@ let{header:c,graphics:l}=this,{structure:h,geometry:u}=c,m=h&&this.layers(h,o,i)
 Math.hypot(...y);p.bindVertexArray(this.array),p.enable(p.BLEND),p.blendFuncSeparate(p.SRC_ALPHA,p.ONE_MINUS_SRC_ALPHA,p.
 ZERO,p.ONE),p.depthFunc(p.LEQUAL);let w=this.program;l.programs.use(w,{u_matrix:G(u,e,t),u_anchor:t,u_eye:[...E(y,k(t,g)),
 g],u_picture:[r,n],u_horizon:[0,0,0,1]}),p.bindBuffer(p.ARRAY_BUFFER,this.buffer);for(let{first:M,count:P,color:S,width:R,
-above:L}of m){let[U,I,J,ae=1]=S;l.programs.use(w,{u_width:R*x,u_nearer:Gi*v*(1+zi*L)});for(let V of[0,1])p.vertexAttribPointer(
+above:L}of m){let[U,I,J,ae=1]=S;l.programs.use(w,{u_width:R*x,u_nearer:Wi*v*(1+$i*L)});for(let V of[0,1])p.vertexAttribPointer(
 V,3,p.FLOAT,!1,qs,qs*(M+V/2)),p.vertexAttrib4f(2+V,U,I,J,ae);p.drawArraysInstanced(p.TRIANGLE_STRIP,0,4,P)}p.bindVertexArray(
 null),p.depthFunc(p.LESS),p.disable(p.BLEND)}layers(e,t,r){let[[n,s],[o,i],[,c]]=["critical","separatrices","nullclines"].
 map(w=>this.shown(t,r,w)),l=JSON.stringify([n,s?.digest,o,i?.digest,c?.digest,Nr(r)]);if(this.drawn?.key===l)return this.
 drawn.layers;let h=Js(s?.data??[],i?.data??[],{points:n,saddles:o}),{line:u,dot:m,rim:p,middle:f}=e,d=[],b=[],g=0,y=(w,M,P,S)=>{
-let R=w.length/6;R&&d.push({first:g,count:R,color:M,width:P,above:S}),b.push(w),g+=R},x=e.nullclines.map((w,M)=>Wi(c?.data??
+let R=w.length/6;R&&d.push({first:g,count:R,color:M,width:P,above:S}),b.push(w),g+=R},x=e.nullclines.map((w,M)=>ji(c?.data??
 [],M));x.forEach(w=>y(w,p,u[0],0)),x.forEach((w,M)=>y(w,e.nullclines[M].color,u[1],1)),y(Ve(Object.values(h.lines).flat()),
 p,u[0],1.5),Object.entries(h.lines).forEach(([w,M],P)=>y(Ve(M),e.lines[w],u[1],2+P));let v=e.kinds.map((w,M)=>h.points[M]??
 []);return y(Ve(v,!0),p,m[0],6),e.kinds.forEach(({color:w},M)=>y(Ve([v[M]],!0),w,m[1],7)),y(Ve(v.filter((w,M)=>e.kinds[M].
@@ -760,13 +760,13 @@ counted(r.createVertexArray()),this.buffer??=t.counted(r.createBuffer()),r.bindV
 this.buffer),r.bufferData(r.ARRAY_BUFFER,Float32Array.from(e.flatMap(n=>[...n])),r.STATIC_DRAW);for(let n of[0,1])r.enableVertexAttribArray(
 n),r.vertexAttribDivisor(n,1);r.bindVertexArray(null)}at({place:e,position:t,height:r},n,s,o){let{geometry:i,structure:c}=this.
 header,[l,h]=this.shown(s,o,"critical"),u=2*n.height/Math.max(r,1),[m,p]=["",Ks];for(let f=0;f<Math.min(l,h?.shape[0]??0);f+=
-1){let[d,b,g,y]=[0,1,2,3].map(M=>Number(h?.data[ne*f+M])),x=T(K(i.frame,[d,b,g]),i.center),v=n.project(x);if(!v||Math.hypot(
+1){let[d,b,g,y]=[0,1,2,3].map(M=>Number(h?.data[ne*f+M])),x=A(K(i.frame,[d,b,g]),i.center),v=n.project(x);if(!v||Math.hypot(
 ...E(x,t))>4*Ks*u)continue;let w=.5*r*Math.hypot((v[0]-e[0])*n.aspect,v[1]-e[1]);w<p&&([m,p]=[c?.kinds[y]?.name??"",w])}
 return m}dispose(){this.graphics.free("Buffer",this.buffer),this.graphics.free("VertexArray",this.array),this.array=this.
-buffer=this.drawn=null}};function Nr([a,e,t]){return t<.5?a:e}var $i={position:["nodes"],normal:["nodes"],cells:["cells"],triangles:["nodes","cells","scalar"],blocks:["cells"],cmap:[
-"cmap"],image:["image"],step:["step"],scalars:["scalar"]},Zs=["padded","unit","open","nearest","rays"],ji=8*(4/3),Xi=2048,
-Yi=["u_slices","u_slicesNext","u_image","u_stepImage","u_nodes"],qi=0,_e=class{graphics;header;parts;earth;bodies;arrows;marks;tile;anchor=[
-0,0,0];version=0;resources=new Map;scalarSteps="";most=null;tracing="";wanted=[];number=qi+=1;constructor(e,t,r,n=null){
+buffer=this.drawn=null}};function Nr([a,e,t]){return t<.5?a:e}var Xi={position:["nodes"],normal:["nodes"],cells:["cells"],triangles:["nodes","cells","scalar"],blocks:["cells"],cmap:[
+"cmap"],image:["image"],step:["step"],scalars:["scalar"]},Zs=["padded","unit","open","nearest","rays"],Yi=8*(4/3),qi=2048,
+Ki=["u_slices","u_slicesNext","u_image","u_stepImage","u_nodes"],Ji=0,_e=class{graphics;header;parts;earth;bodies;arrows;marks;tile;anchor=[
+0,0,0];version=0;resources=new Map;scalarSteps="";most=null;tracing="";wanted=[];number=Ji+=1;constructor(e,t,r,n=null){
 this.tile=n,this.graphics=e,this.header=t,this.parts=r,this.earth=new Ot(e,t,r),this.bodies=new Lt(e,t,r),this.arrows=new Rt(
 e,t,r),this.marks=new Ft(e,t,r)}isReady(e,t=!1){let r=[!1,!0].map(i=>this.arrows.program(e,i));return[...["place","blur",
 "colour","surface","smooth","probe"].filter(i=>t||i!=="smooth").map(i=>this.programs(i).ready),this.earth.isReady,this.bodies.
@@ -794,7 +794,7 @@ e[e.length-1]).length&&(!this.header.slices.trace||this.isLoaded(e))}stopTracing
 dispose(),this.graphics.tracings.delete(this.tracing),this.tracing=""}part(e){let t=this.parts.get(e);if(!t)throw new Error(
 `the part "${e}" of the scene is missing`);return t}forget(e){let[t,r]=e.split("/");["position","cells","triangles"].includes(
 t)&&this.arrows.forget();let n=["slices","extra","flow"].includes(t);!n&&t!=="scalars"&&(this.earth.forget(e),this.version+=
-1,this.most=null),Ce.includes(t)&&this.bodies.dispose();for(let s of n?[`slices/${r}`]:$i[t]??[])this.drop(s);Zs.includes(
+1,this.most=null),Ce.includes(t)&&this.bodies.dispose();for(let s of n?[`slices/${r}`]:Xi[t]??[])this.drop(s);Zs.includes(
 t)&&(this.wanted=[],this.dropSlices(NaN,NaN))}drop(e){let t=this.resources.get(e);this.resources.delete(e),t&&(t.users-=
 1,!t.users&&(this.graphics.free(t.kind,t.object),this.graphics.common.delete(t.key)))}dispose(){for(let e of[...this.resources.
 keys()])this.drop(e);this.stopTracing(),this.earth.dispose(),this.bodies.dispose(),this.arrows.dispose(),this.marks.dispose()}key(e,...t){
@@ -802,22 +802,22 @@ let r=e.map(n=>this.parts.has(n)?this.part(n).digest:"none");return r.every(Bool
 let o=this.resources.get(e);if(o)return o.object;let{graphics:i}=this,c=r&&`${e.split("/")[0]} ${r}`,l=c?i.common.get(c):
 void 0,h=l?.object??i.counted(n()),u=l??{kind:t,object:h,count:0,key:c,users:0};return u.users+=1,this.resources.set(e,u),
 l||(u.count=s(h)||0),c&&i.common.set(c,u),h}get blocks(){return this.part("mesh")}get doublings(){let{geometry:e,mesh:t}=this.
-header;return this.most??=As(e,this.blocks,this.part("position").data,t.tileCells)}cornersAt(e){let{triangles:t,shape:r}=this.
+header;return this.most??=Ts(e,this.blocks,this.part("position").data,t.tileCells)}cornersAt(e){let{triangles:t,shape:r}=this.
 header.geometry;return t?ts(this.part("triangles").data,e):Qn(r,e)}isLoaded(e){return e.every(t=>this.resources.has(`sli\
 ces/${t}`))}get tracedBytes(){let{slices:e,geometry:t}=this.header;return e.trace?[...this.resources.keys()].filter(n=>n.
-startsWith("slices/")).length*ji*e.count*t.rows.size*t.columns.size:0}load(e){for(let t of e)this.slices(t)}bindNodes(e){
+startsWith("slices/")).length*Yi*e.count*t.rows.size*t.columns.size:0}load(e){for(let t of e)this.slices(t)}bindNodes(e){
 let t=this.graphics.context,{shape:r,triangles:n,planar:s}=this.header.geometry;e.some((u,m)=>u!==this.anchor[m])&&this.
 drop("nodes"),this.anchor=e;let[o,i]=this.nodesSize,c=this.texture("nodes",this.key(["position","normal"],i,e),u=>{mr(t,
 i,o),t.bindTexture(t.TEXTURE_2D_ARRAY,u);let m=new Float32Array((s?3:6)*i*o);m.set(dt(this.part("position").data,e)),s||
 m.set(Zn(this.part("normal").data),3*i*o);let p=[i,o,s?1:2];t.texImage3D(t.TEXTURE_2D_ARRAY,0,t.RGB32F,...p,0,t.RGB,t.FLOAT,
 m),Qs(t,t.TEXTURE_2D_ARRAY)}),l=()=>this.parts.get("cells")?.data??Uint8Array.of(1),h=n?this.table("cells",this.key(["tr\
-iangles","blocks"]),t.RGBA32UI,Xi,()=>es(this.part("triangles").data,this.part("blocks").data)):this.table("cells",this.
+iangles","blocks"]),t.RGBA32UI,qi,()=>es(this.part("triangles").data,this.part("blocks").data)):this.table("cells",this.
 key(["cells"],r),t.R8UI,this.parts.has("cells")?r[1]-1:1,l);this.bind("u_nodes",c),this.bind(n?"u_corners":"u_open",h)}get nodesSize(){
 let{shape:e,triangles:t,rows:r,columns:n}=this.header.geometry;return t?[r.size,n.size]:e}bind(e,t){let r=this.graphics.
-context;r.activeTexture(r.TEXTURE0+Q.indexOf(e)),r.bindTexture(Yi.includes(e)?r.TEXTURE_2D_ARRAY:r.TEXTURE_2D,t),r.activeTexture(
+context;r.activeTexture(r.TEXTURE0+Q.indexOf(e)),r.bindTexture(Ki.includes(e)?r.TEXTURE_2D_ARRAY:r.TEXTURE_2D,t),r.activeTexture(
 r.TEXTURE0+Q.length)}table(e,t,r,n,s){let o=this.graphics.context,i={[o.RGBA32UI]:[o.RGBA_INTEGER,o.UNSIGNED_INT,4],[o.R8UI]:[
 o.RED_INTEGER,o.UNSIGNED_BYTE,1],[o.RG32F]:[o.RG,o.FLOAT,2],[o.RGBA32F]:[o.RGBA,o.FLOAT,4]},[c,l,h]=i[r];return this.texture(
-e,t,u=>{let m=s(),p=Math.ceil(m.length/h/n);o.bindTexture(o.TEXTURE_2D,u),o.pixelStorei(o.UNPACK_ALIGNMENT,1);let f=Ki(m,
+e,t,u=>{let m=s(),p=Math.ceil(m.length/h/n);o.bindTexture(o.TEXTURE_2D,u),o.pixelStorei(o.UNPACK_ALIGNMENT,1);let f=Zi(m,
 h*n*p);o.texImage2D(o.TEXTURE_2D,0,r,n,p,0,c,l,f),Qs(o,o.TEXTURE_2D)})}shares(e,t){let{geometry:r,scalars:n}=this.header,
 {shape:s}=r,o=this.scalarParts(e,t);return[this.key(["triangles",...new Set(o)],s,n.low,n.high,n.log),()=>bt(o.map(l=>this.
 part(l).data),n)]}texture(e,t,r){let n=this.graphics.context;return this.take(e,"Texture",t,()=>n.createTexture(),r)}slices(e){
@@ -845,16 +845,16 @@ this.bind("u_stepImage",n&&this.image("step",n.repeat));let i=xn(this.parts.get(
 bind("u_cmap",this.table("cmap",this.key(["cmap"],s.beyond),r.RGBA32F,i.length/4,()=>i));let[c,l]=this.shares(e,t);this.
 bind("u_shares",s.name===null?null:this.table("scalar",c,r.RG32F,this.nodesSize[1],l));let h=()=>Jn(n?.alongI??[],n?.alongJ??
 []);this.bind("u_along",n&&this.table("along","",r.RG32F,Math.max(n.alongI.length,n.alongJ.length),h))}};function Qs(a,e){
-a.texParameteri(e,a.TEXTURE_MIN_FILTER,a.NEAREST),a.texParameteri(e,a.TEXTURE_MAG_FILTER,a.NEAREST)}function Ki(a,e){if(a.
-length===e)return a;let t=new a.constructor(e);return t.set(a),t}var Ji=60,Zi=25,Qi=9e8,ec=3.5,tc={slices:4,flow:24},Nt=class{layers=[];missing=[];wanted=0;pending=0;host;root;tiles=new Map;pyramid=null;chosen={
-choices:new Map,steps:[],names:""};count=0;isWaiting=!1;hasAsked=!1;isOver=!1;failed=new Te;constructor(e,t){this.host=e,
+a.texParameteri(e,a.TEXTURE_MIN_FILTER,a.NEAREST),a.texParameteri(e,a.TEXTURE_MAG_FILTER,a.NEAREST)}function Zi(a,e){if(a.
+length===e)return a;let t=new a.constructor(e);return t.set(a),t}var Qi=60,ec=25,tc=9e8,rc=3.5,nc={slices:4,flow:24},Nt=class{layers=[];missing=[];wanted=0;pending=0;host;root;tiles=new Map;pyramid=null;chosen={
+choices:new Map,steps:[],names:""};count=0;isWaiting=!1;hasAsked=!1;isOver=!1;failed=new Ae;constructor(e,t){this.host=e,
 this.root=t}has(e,t){return this.tiles.get(e)?.parts.has(t)??!1}fail(e,t){this.failed.add(this.need(e,t)),this.host.refine()}need(e,t){
 return`${e} ${t} ${this.root.header.scalars.name}`}dispose(){this.isOver=!0;for(let e of[...this.tiles.keys()])this.drop(
 e)}setPart(e,t){let{graphics:r,header:n}=this.root,s=this.tiles.get(e)??this.emptyTile();if(this.tiles.set(e,s),t.digest&&
 s.parts.get(t.name)?.digest===t.digest)return;if(r.release(s.parts.get(t.name)),s.parts.set(t.name,r.hold(t)),t.name==="\
 header"){let l=JSON.parse(new TextDecoder().decode(t.data));s.scene?.dispose(),l&&(l.geometry.reach=n.geometry.reach),s.
 scene=l&&new _e(r,{...n,...l,pyramid:null,bodies:null,structure:null},s.parts,ce(e)),this.giveMap(s)}else s.scene?.forget(
-t.name);let{names:o,steps:i}=this.chosen;this.missing=this.missing.filter(l=>!this.isHere(l,i));let c=Ar(this.chosen.choices,
+t.name);let{names:o,steps:i}=this.chosen;this.missing=this.missing.filter(l=>!this.isHere(l,i));let c=Tr(this.chosen.choices,
 l=>this.isHere(l,i));String([...c.keys()])!==o&&this.host.refine()}recolour(e={}){let{steps:t}=this.chosen;for(let r of this.
 tiles.values()){let{scene:n,parts:s}=r;if(!n||(Object.assign(n.header,e),this.giveMap(r),n.forget("scalars"),(t.length?n.
 scalarParts(t[0],t[t.length-1]):[]).every(c=>s.has(c))))continue;let i=[...s.keys()].filter(c=>c.startsWith("scalars/"));
@@ -866,8 +866,8 @@ B?[this.root.header.pyramid?.depth??0,0,0]:ce(s);return o?[{scene:o,key:c,covere
 root,{settings:n,canvas:s,ratio:o}=this.host;if(!r.pyramid)return new Map;this.pyramid??=new mt(r.pyramid,Hn(r)??this.root.
 part("places").data);let i=this.pyramid.choose({...e.sight(s.height/o),planes:e.planes,cellPixels:zn(r.pyramid,n),shownOn:this.
 host.shownOn});this.count+=1;for(let u of i.keys()){let m=this.tiles.get(u);m&&(m.used=this.count)}let c=performance.now()+
-Zi,l=this.obtainable(Wn(i),t,r.pyramid.depth);this.missing=l.filter(u=>!this.isHere(u,t)),this.ask(),this.trim(t);for(let u of l)
-this.isHere(u,t)&&this.load(u,t,c);let h=Ar(i,u=>this.isHere(u,t)&&this.load(u,t,c));return this.wanted=l.length,this.pending=
+ec,l=this.obtainable(Wn(i),t,r.pyramid.depth);this.missing=l.filter(u=>!this.isHere(u,t)),this.ask(),this.trim(t);for(let u of l)
+this.isHere(u,t)&&this.load(u,t,c);let h=Tr(i,u=>this.isHere(u,t)&&this.load(u,t,c));return this.wanted=l.length,this.pending=
 l.filter(u=>!this.isHere(u,t)||!this.isLoaded(u,t)).length,this.chosen={choices:i,steps:t,names:String([...h.keys()])},h}obtainable(e,t,r){
 let n=[t,...t.map(i=>[i])],s=i=>n.some(c=>this.failed.has(this.need(i,c))),o=e.map(i=>{let[c,l,h]=ce(i);for(;c<r&&s(z([c,
 l,h]));)[c,l,h]=[c+1,l>>1,h>>1];return c<r?z([c,l,h]):B});return[...new Set(o)].filter(i=>i!==B)}isHere(e,t){let r=this.
@@ -876,12 +876,12 @@ return r===null||(r?.isLoaded(t)??!1)}load(e,t,r){let n=this.tiles.get(e)?.scene
 now()>r||!n.make(t,r)?(this.host.refine(),!1):(n.load(t),!0)}ask(){let{requests:e,lifetime:t}=this.host;this.isWaiting||
 !(this.missing.length||this.hasAsked)||(this.isWaiting=!0,t.later(()=>{if(this.isWaiting=!1,this.isOver)return;this.hasAsked=
 this.missing.length>0;let r=(o,i)=>this.tiles.get(o)?.scene?.lacking(i)??ie(this.root.header,i),n=this.missing.flatMap(o=>this.
-chosen.steps.flatMap(i=>r(o,i))),s=[...new Set(n)].sort((o,i)=>o-i);e.wantTiles(this.missing.map(ce),s)},Ji))}trim(e){let t=0;
+chosen.steps.flatMap(i=>r(o,i))),s=[...new Set(n)].sort((o,i)=>o-i);e.wantTiles(this.missing.map(ce),s)},Qi))}trim(e){let t=0;
 for(let[r,n]of[...this.tiles].sort(([,s],[,o])=>o.used-s.used)){let{parts:s,scene:o,used:i}=n,c=o?.header.slices.trace?"\
 flow":"slices",l=[...s.keys()].filter(u=>u.startsWith(`${c}/`)),h=o?e.flatMap(u=>ie(o.header,u)):e;for(let u of l.slice(
-0,Math.max(l.length-tc[c],0))){let m=Y(u);if(h.includes(m))continue;for(let f of[c,"extra"])this.release(n,`${f}/${m}`);
+0,Math.max(l.length-nc[c],0))){let m=Y(u);if(h.includes(m))continue;for(let f of[c,"extra"])this.release(n,`${f}/${m}`);
 let p=[...s.keys()].filter(f=>Ee(f,m,this.root.header));for(let f of p)this.release(n,f)}for(let{data:u}of s.values())t+=
-ec*u.byteLength;t+=o?.tracedBytes??0,t>(this.host.options.source?.memory??Qi)&&i<this.count&&this.drop(r)}}drop(e){let t=this.
+rc*u.byteLength;t+=o?.tracedBytes??0,t>(this.host.options.source?.memory??tc)&&i<this.count&&this.drop(r)}}drop(e){let t=this.
 tiles.get(e);t?.scene?.dispose();for(let r of[...t?.parts.keys()??[]])this.release(t,r);this.tiles.delete(e)}release(e,t){
 t!=="cmap"&&this.root.graphics.release(e?.parts.get(t)),e?.parts.delete(t)}};var It=class{scene=null;tiles=null;places=null;shown=null;view;renderer;next=[];isLate=!1;constructor(e){this.view=e,this.
 renderer=new Mt(e,this),!e.graphics.gl&&e.panel.fail("This browser has no WebGL2 with floating-point targets, which are \
@@ -891,7 +891,7 @@ t.graphics)}leave(){this.tiles?.dispose(),this.scene?.dispose(),this.places?.dis
 null}dispose(){this.leave(),this.renderer.dispose()}restart(e){this.renderer.restart(e)}resize(e,t){this.renderer.resize(
 e,t)}refine(){this.renderer.refine()}arrange(e){let t=this.tiles?.arrange(e)??[];return this.view.root.dataset.tiles=String(
 this.tiles?.pending??0),t}get smooth(){let{header:e,options:t}=this.view;return t.smooth!==void 0||!e?t.smooth??!1:this.
-program(e).price<An}get isComing(){return!!this.tiles?.missing.length}get lacking(){let[e,t]=this.view.player.moment;return this.
+program(e).price<Tn}get isComing(){return!!this.tiles?.missing.length}get lacking(){let[e,t]=this.view.player.moment;return this.
 scene?.missing(e,t)??[]}missing(e){return[...new Set(e.flatMap(t=>this.scene?.lacking(t)??[]))]}make(e,t){return this.next=
 e,!this.missing(e).length&&!!this.scene?.make(e,t)}available(e){let{view:t,scene:r,shown:n,lacking:s}=this,{header:o,player:i}=t;
 if(!o||!r)return null;let c=i.moment,l=i.playing?[1,2].map(p=>(c[1]+p)%o.slices.steps):[],h=this.missing([c[0],c[1],...this.
@@ -986,18 +986,18 @@ void main()
   flowtexSidesOut = vec2(cell.x, u_mapCells - cell.x) / u_mapCells;
   gl_Position = projectTile(place);
 }
-`;var ra=64,Vt=.02,Ut=Math.PI/2;function sa(a){let e=sc(a),t=ac(a.half).map(l=>oc(e,l)),r=t.map(l=>ic(l,a.latitude)),n=r.map(
+`;var ra=64,Vt=.02,Ut=Math.PI/2;function sa(a){let e=oc(a),t=ic(a.half).map(l=>cc(e,l)),r=t.map(l=>lc(l,a.latitude)),n=r.map(
 ([l])=>l),s={seen:Math.max(...t.map(l=>Math.acos(Math.min(l[2],1)))),south:Math.min(...n),north:Math.max(...n),aside:Math.
 max(...r.map(([,l])=>Math.abs(l)))},o=Vt*s.seen,i=na(e,a,1)||s.north+o>Ut,c=na(e,a,-1)||s.south-o<-Ut;return s.seen+=o,s.
-north=i?Ut:s.north+o,s.south=c?-Ut:s.south-o,s.aside=i||c?Math.PI:Math.min((1+Vt)*s.aside,Math.PI),s}function sc({bearing:a,
-pitch:e,away:t}){let r=[Math.sin(a),Math.cos(a),0],n=T(k(r,Math.sin(e)),[0,0,-Math.cos(e)]),s=T(k(r,Math.cos(e)),[0,0,Math.
-sin(e)]);return{eye:T([0,0,1],n,-t),look:k(n,t),right:[r[1],-r[0],0],up:s}}function ac([a,e]){let t=[];for(let r=0;r<=ra;r+=
-1){let n=2*r/ra-1;t.push([n*a,e],[n*a,-e],[a,n*e],[-a,n*e])}return t}function oc({eye:a,look:e,right:t,up:r},[n,s]){let o=C(
-T(T(e,t,n),r,s)),i=-A(a,o),c=i**2-A(a,a)+1;if(c>0&&i>0)return T(a,o,i-Math.sqrt(c));let l=1/O(a),h=C(a),u=C(T(o,h,-A(o,h)));
-return T(k(h,l),u,Math.sqrt(1-l**2))}function ic([a,e,t],r){let n=t*Math.sin(r)+e*Math.cos(r),s=t*Math.cos(r)-e*Math.sin(
+north=i?Ut:s.north+o,s.south=c?-Ut:s.south-o,s.aside=i||c?Math.PI:Math.min((1+Vt)*s.aside,Math.PI),s}function oc({bearing:a,
+pitch:e,away:t}){let r=[Math.sin(a),Math.cos(a),0],n=A(k(r,Math.sin(e)),[0,0,-Math.cos(e)]),s=A(k(r,Math.cos(e)),[0,0,Math.
+sin(e)]);return{eye:A([0,0,1],n,-t),look:k(n,t),right:[r[1],-r[0],0],up:s}}function ic([a,e]){let t=[];for(let r=0;r<=ra;r+=
+1){let n=2*r/ra-1;t.push([n*a,e],[n*a,-e],[a,n*e],[-a,n*e])}return t}function cc({eye:a,look:e,right:t,up:r},[n,s]){let o=C(
+A(A(e,t,n),r,s)),i=-T(a,o),c=i**2-T(a,a)+1;if(c>0&&i>0)return A(a,o,i-Math.sqrt(c));let l=1/O(a),h=C(a),u=C(A(o,h,-T(o,h)));
+return A(k(h,l),u,Math.sqrt(1-l**2))}function lc([a,e,t],r){let n=t*Math.sin(r)+e*Math.cos(r),s=t*Math.cos(r)-e*Math.sin(
 r);return[Math.asin(Math.min(Math.max(n,-1),1)),Math.atan2(a,s)]}function na({eye:a,look:e,right:t,up:r},{latitude:n,away:s,
-half:o},i){let c=[0,i*Math.cos(n),i*Math.sin(n)],l=A(c,a)>=1-Vt,h=T(c,a,-1),u=A(h,e)/s**2,m=(1+Vt)*u;return l&&Math.abs(
-A(h,t))<=m*o[0]&&Math.abs(A(h,r))<=m*o[1]}var Cr=1e-5,Dt=Math.atan(Math.sinh(Math.PI))*180/Math.PI,D=Math.PI/180,cc=88*D,aa='export it with projection="mercator"';
+half:o},i){let c=[0,i*Math.cos(n),i*Math.sin(n)],l=T(c,a)>=1-Vt,h=A(c,a,-1),u=T(h,e)/s**2,m=(1+Vt)*u;return l&&Math.abs(
+T(h,t))<=m*o[0]&&Math.abs(T(h,r))<=m*o[1]}var Cr=1e-5,Dt=Math.atan(Math.sinh(Math.PI))*180/Math.PI,D=Math.PI/180,hc=88*D,aa='export it with projection="mercator"';
 function be({lng:a,lat:e}){let t=Math.sin(_(e,-Dt,Dt)*D);return[a/360+.5,.5-Math.atanh(t)/(2*Math.PI)]}function Ht(a){return 1/
 Math.cos(_(a,-Dt,Dt)*D)}var Bt=class{origin;slope;box;constructor(e,t,r){let n=e?.map;if(!n||!t)throw new Error(`the flo\
 w is not on a map; ${aa}`);let[s,o]=r??[n[0],n[2]];this.box=[s,n[1],o,n[3]];let[i,c]=t.shape,l=(x,v)=>{let[w,M,P]=t.data.
@@ -1013,7 +1013,7 @@ box[0]+this.box[2])-t)/n),r]}look(e,t){let r=1/(512*2**e.zoom*this.slope[0]),[n,
 box,c=n+(n<.5*(o+i)?1:-1)/this.slope[0];if(e.globe)return this.globeLooks(e,r,[n,c,t]);let l=this.wholeLook(e,r,[n,s,t]);
 if(l)return[l];let h=[this.flatLook(e,r,[n,s,t])],u=.5*r*Math.min(e.width,e.height),m=n-u<=o&&n+u>=i,p=r*ia(e);return!m&&
 Math.abs(c-_(c,o,i))<p&&h.push(this.flatLook(e,r,[c,s,t])),h}get isAround(){let[e,,t]=this.box;return Math.abs((t-e)*this.
-slope[0]-1)<Cr}globeLooks(e,t,[r,n,s]){let o=sa(lc(e,1/(t*this.slope[0]))),[i,,c]=this.box,l=.5*o.aside/(Math.PI*this.slope[0]),
+slope[0]-1)<Cr}globeLooks(e,t,[r,n,s]){let o=sa(uc(e,1/(t*this.slope[0]))),[i,,c]=this.box,l=.5*o.aside/(Math.PI*this.slope[0]),
 u=!(r-l<=i&&r+l>=c)&&Math.abs(n-_(n,i,c))<l;return u&&this.isAround&&4*l>=c-i?[this.globeLook(e,t,{...o,aside:Math.PI},[
 .5*(i+c),s])]:(u?[r,n]:[r]).map(p=>this.globeLook(e,t,o,[p,s]))}wholeLook(e,t,[r,n,s]){let[o,,i]=this.box;if(!this.isAround||
 e.pitch>0)return null;let c=t*ia(e);if(r-c>o||r+c<i)return null;let{height:l}=e;e.bearing&&(l=2*c/t);let h=(i-o)/t;return this.
@@ -1023,15 +1023,15 @@ Math.cos(h),l+p*Math.cos(u)],focal_point:[i,c,l],up:[Math.sin(h),Math.cos(h),0],
 width:e,height:t}}globeLook(e,t,r,[n,s]){let o=1/(t*this.slope[0]),[i,c]=[r.south,r.north].map(f=>be({lng:0,lat:f/D})[1]),
 l=(.5*(i+c)-this.origin[1])/this.slope[1],[h,u]=[r.aside/Math.PI,i-c],m={position:[n,l,s+1/this.slope[0]],focal_point:[n,
 l,s],up:[0,1,0],parallel:!0,parallel_scale:.5*u/this.slope[0],view_angle:e.fov},p=new Ur(this,e.center,r.seen);return{state:m,
-width:h*o,height:u*o,shownOn:p}}};function lc({center:a,width:e,height:t,bearing:r,pitch:n,fov:s},o){let i=o*Ht(a.lat)/(2*
+width:h*o,height:u*o,shownOn:p}}};function uc({center:a,width:e,height:t,bearing:r,pitch:n,fov:s},o){let i=o*Ht(a.lat)/(2*
 Math.PI);return{latitude:a.lat*D,bearing:r*D,pitch:n*D,away:.5*t/Math.tan(.5*s*D)/i,half:[.5*e/i,.5*t/i]}}var Ur=class{mercator;middle;cosine;seen;constructor(e,{
 lng:t,lat:r},n){this.mercator=e,this.middle=oa(t,r),this.cosine=1/Ht(r),this.seen=n}sees(e){let[t,r,,n]=Array.from(e);return Math.
-acos(_(A(oa(...this.mercator.lngLatOf([t,r])),this.middle),-1,1))<=this.seen+this.angle(n)}scale(e){let[,t,,r]=Array.from(
+acos(_(T(oa(...this.mercator.lngLatOf([t,r])),this.middle),-1,1))<=this.seen+this.angle(n)}scale(e){let[,t,,r]=Array.from(
 e),n=Math.abs(2*Math.PI*(this.mercator.placeOf([0,t])[1]-.5)),s=Math.max(n-this.angle(r),0);return Math.min(1/Math.cosh(
 s)/this.cosine,1)}angle(e){return 2*Math.PI*this.mercator.slope[0]*e}};function oa(a,e){let t=Math.cos(e*D);return[t*Math.
-cos(a*D),t*Math.sin(a*D),Math.sin(e*D)]}function ia({width:a,height:e,pitch:t,fov:r}){let[n,s]=[t*D,.5*r*D],o=n+s;if(o>cc)
+cos(a*D),t*Math.sin(a*D),Math.sin(e*D)]}function ia({width:a,height:e,pitch:t,fov:r}){let[n,s]=[t*D,.5*r*D],o=n+s;if(o>hc)
 return 1/0;let c=.5*e/Math.tan(s)*Math.cos(n)*(Math.tan(o)-Math.tan(n));return Math.hypot(c,.5*a*Math.cos(n)*Math.cos(s)/
-Math.cos(o))}var Vr=8192,hc=22,ca=512,uc=[64,256],mc=.25,Gt=class{view;isUsed=!1;texture;shown=null;next=null;constructor(e,t){this.view=
+Math.cos(o))}var Vr=8192,mc=22,ca=512,pc=[64,256],fc=.25,Gt=class{view;isUsed=!1;texture;shown=null;next=null;constructor(e,t){this.view=
 t,this.texture=e.createTexture()}dispose(e){this.view.dispose(),e?.deleteTexture(this.texture)}follow(e,t){this.isUsed=this.
 view.isVisible=e!==void 0,this.view.shownOn=e?.shownOn??null,e?this.view.look(e.state,e.width,e.height,t):this.shown=this.
 next=null}painted(e){let{camera:t}=this.view;t&&this.isUsed&&(this.next={camera:t,isComplete:e})}get isComplete(){let{view:e,
@@ -1043,17 +1043,17 @@ texParameteri(e.TEXTURE_2D,e.TEXTURE_MAG_FILTER,e.LINEAR),this.shown=this.next,t
 mercator:n,globe:s}=e,{vertexShaderPrelude:o,define:i}=e.shaderData,c=r.get(`${i}
 ${o}
 ${ta}`,ea);if(!c.ready)return c.error;if(t.activeTexture(t.TEXTURE0),t.bindTexture(t.TEXTURE_2D,this.texture),this.upload(
-t,s),!this.shown)return!0;let{camera:l}=this.shown,h=Math.floor(_(e.zoom,0,hc)),u=n.placeOf(l.state.focal_point),m=2**h,
+t,s),!this.shown)return!0;let{camera:l}=this.shown,h=Math.floor(_(e.zoom,0,mc)),u=n.placeOf(l.state.focal_point),m=2**h,
 p=[Math.floor(u[0]*m),_(Math.floor(u[1]*m),0,m-1)],f=Math.floor(p[0]/m),d={z:h,x:p[0]-f*m,y:p[1]},b=L=>L.map((U,I)=>(U*m-
-p[I])*Vr),[g,y,x,v]=n.box,[w,M]=[[g,y],[x,v]].map(L=>b(n.placeOf(L)));t.bindVertexArray(e.array);let P=s?pc(e,Math.max(x-
+p[I])*Vr),[g,y,x,v]=n.box,[w,M]=[[g,y],[x,v]].map(L=>b(n.placeOf(L)));t.bindVertexArray(e.array);let P=s?dc(e,Math.max(x-
 g,v-y)*Math.abs(n.slope[0])):1,S=s?0:Math.round(be(e.center)[0]-u[0]),R=0;e.isRepeated&&!s&&(R=Math.ceil(t.drawingBufferWidth/
 (ca*2**e.zoom)));for(let L=-R;L<=R;L+=1){let U={wrap:f+S+L,canonical:d},I=e.getProjectionData({tileID:U,applyGlobeMatrix:s});
 r.use(c,{u_projection_matrix:I.mainMatrix,u_projection_fallback_matrix:I.fallbackMatrix,u_projection_tile_mercator_coords:I.
 tileMercatorCoords,u_projection_clipping_plane:I.clippingPlane,u_projection_transition:I.projectionTransition,u_box:[...w,
-M[0]-w[0],M[1]-w[1]],u_mapCells:P,u_flowMatrix:fc(this.view.header,l,n,p,1/(m*Vr)),u_flowPicture:0,u_flowPixel:2*l.height/
+M[0]-w[0],M[1]-w[1]],u_mapCells:P,u_flowMatrix:bc(this.view.header,l,n,p,1/(m*Vr)),u_flowPicture:0,u_flowPixel:2*l.height/
 this.view.canvas.height/(x-g),u_repeated:!!this.view.header.ends,u_opacity:e.opacity}),t.drawArraysInstanced(t.TRIANGLE_STRIP,
-0,2*P+2,P)}return t.bindVertexArray(null),!0}};function pc({zoom:a,center:e},t){let n=ca*2**a*Ht(e.lat)/(2*Math.PI),s=t*
-Math.PI*Math.sqrt(n/(2*mc));return _(Math.ceil(s),...uc)}function fc({geometry:a},e,t,r,n){let{center:s,frame:o}=a,{focal_point:i}=e.
+0,2*P+2,P)}return t.bindVertexArray(null),!0}};function dc({zoom:a,center:e},t){let n=ca*2**a*Ht(e.lat)/(2*Math.PI),s=t*
+Math.PI*Math.sqrt(n/(2*fc));return _(Math.ceil(s),...pc)}function bc({geometry:a},e,t,r,n){let{center:s,frame:o}=a,{focal_point:i}=e.
 state,c=F(o,E(i,s)),l=G(a,e,c),h=[0,1].map(f=>F(o,[0,1].map(d=>d===f?n/t.slope[f]:0).concat(0))),u=t.placeOf(i),m=[0,1].
 map(f=>(r[f]*n*Vr-u[f])/t.slope[f]).concat(0);return[...h,[0,0,0],F(o,m)].flatMap((f,d)=>[0,1,2,3].map(b=>f.reduce((g,y,x)=>g+
 l[4*x+b]*y,d===3?l[12+b]:0)))}var zt=class{atOnce=1;header;parts=[];tiles=new Map;known;texts;constructor(e,t,r,n){this.header=e,this.known=r,this.texts=
@@ -1084,11 +1084,11 @@ configuration:e}){if(a==="default"){let t=e?.separator??"/";return r=>["c",...r]
 v2:object"};let e=a.match(/^([<|>])(.*)$/);if(!e)throw new H(`Invalid dtype: ${a}`);let[,t,r]=e,n={b1:"bool",i1:"int8",u1:"\
 uint8",i2:"int16",u2:"uint16",i4:"int32",u4:"uint32",i8:"int64",u8:"uint64",f2:"float16",f4:"float32",f8:"float64"}[r]??
 (r.startsWith("S")||r.startsWith("U")?`v2:${r}`:void 0);if(!n)throw new H(`Unsupported or unknown dtype: ${a}`);return t===
-"|"?{dataType:n}:{dataType:n,endian:t==="<"?"little":"big"}}function dc(a){return(a.id==="fixedscaleoffset"||a.id==="num\
+"|"?{dataType:n}:{dataType:n,endian:t==="<"?"little":"big"}}function gc(a){return(a.id==="fixedscaleoffset"||a.id==="num\
 codecs.fixedscaleoffset")&&typeof a.scale=="number"&&typeof a.offset=="number"&&(a.astype===void 0||typeof a.astype=="st\
 ring")&&(a.dtype===void 0||typeof a.dtype=="string")}function pa(a,e={}){let t=[],r=la(a.dtype);a.order==="F"&&t.push({name:"\
 transpose",configuration:{order:"F"}});for(let s of a.filters??[]){if(s.id==="fixedscaleoffset"||s.id==="numcodecs.fixed\
-scaleoffset"){if(!dc(s))throw new H(`Invalid fixedscaleoffset filter: ${JSON.stringify(s)}`);t.push({name:"scale_offset",
+scaleoffset"){if(!gc(s))throw new H(`Invalid fixedscaleoffset filter: ${JSON.stringify(s)}`);t.push({name:"scale_offset",
 configuration:{scale:s.scale,offset:s.offset}});let c=s.astype??s.dtype;if(c!==void 0&&c!==a.dtype){let l=la(c).dataType;
 if(!Wt(l,"number")&&!Wt(l,"bigint"))throw new H(`fixedscaleoffset astype must be a numeric data type, got ${c}`);t.push(
 {name:"cast_value",configuration:{data_type:l,rounding:"nearest-even",out_of_range:"wrap"}})}continue}let{id:o,...i}=s;t.
@@ -1107,20 +1107,20 @@ fill_value]}return a.fill_value}function Br(a,...e){if(!e.some(t=>a instanceof t
 format:e,signal:t}){let r;if(a instanceof ArrayBuffer)r=new Response(a);else{let n=new Uint8Array(a.buffer,a.byteOffset,
 a.byteLength);r=new Response(n.slice().buffer)}ba(r.body,"Response does not contain body.");try{return await new Response(
 r.body.pipeThrough(new DecompressionStream(e),{signal:t})).arrayBuffer()}catch{throw t?.throwIfAborted(),new Error(`Fail\
-ed to decode ${e}`)}}var ya=bc();function bc(){let a=new Uint32Array([305419896]);return new Uint8Array(a.buffer,a.byteOffset,a.byteLength)[0]!==
+ed to decode ${e}`)}}var ya=yc();function yc(){let a=new Uint32Array([305419896]);return new Uint8Array(a.buffer,a.byteOffset,a.byteLength)[0]!==
 18}function xa(a){return"BYTES_PER_ELEMENT"in a?a.BYTES_PER_ELEMENT:4}var je=class a{kind="array_to_bytes";#e;#t;#r;#s;#n;constructor(e,t){
 this.#n=e?.endian,this.#t=$t(t.dataType),this.#s=t.shape,this.#e=jt(t.shape,"C");let r=new this.#t(0);this.#r=r.BYTES_PER_ELEMENT}static fromConfig(e,t){
 return new a(e,t)}encode(e){let t=new Uint8Array(e.data.buffer);return ya&&this.#n==="big"&&(t=t.slice(),Dr(t,xa(this.#t))),
 t}computeEncodedSize(e){return e}decode(e){return ya&&this.#n==="big"&&(e=e.slice(),Dr(e,xa(this.#t))),e.byteOffset%this.#r!==
 0&&(e=e.slice()),{data:new this.#t(e.buffer,e.byteOffset,e.byteLength/this.#r),shape:this.#s,stride:this.#e}}};var Yt=class{};function qt(a){return()=>{throw new ye(`${a} encode`)}}var Kt=class a{kind="bytes_to_bytes";static fromConfig(){return new a}encode=qt("crc32c");decode(e){return new Uint8Array(
 e.buffer,e.byteOffset,e.byteLength-4)}computeEncodedSize(e){return e+4}};var Jt=class{};var Zt=class a{kind="bytes_to_bytes";static fromConfig(e){return new a}encode=qt("gzip");async decode(e){let t=await ga(
-e,{format:"gzip"});return new Uint8Array(t)}};var Xe=class{};var Qt=class{};var er=class{};var tr=class{};var Ye=class{};var rr=class{};function gc(){let a=()=>import("numcodecs/blosc").then(s=>s.default),e=()=>import("numcodecs/lz4").then(s=>s.default),t=()=>import("numcodecs/zstd").
+e,{format:"gzip"});return new Uint8Array(t)}};var Xe=class{};var Qt=class{};var er=class{};var tr=class{};var Ye=class{};var rr=class{};function xc(){let a=()=>import("numcodecs/blosc").then(s=>s.default),e=()=>import("numcodecs/lz4").then(s=>s.default),t=()=>import("numcodecs/zstd").
 then(s=>s.default),r=()=>Zt,n=()=>rr;return new Map().set("blosc",a).set("lz4",e).set("zstd",t).set("gzip",r).set("zlib",
 n).set("transpose",()=>tr).set("bytes",()=>je).set("crc32c",()=>Kt).set("vlen-utf8",()=>Ye).set("json2",()=>Xe).set("bit\
 round",()=>De).set("cast_value",()=>Yt).set("scale_offset",()=>Qt).set("numcodecs.blosc",a).set("numcodecs.lz4",e).set("\
 numcodecs.zstd",t).set("numcodecs.gzip",r).set("numcodecs.zlib",n).set("numcodecs.vlen-utf8",()=>Ye).set("numcodecs.shuf\
-fle",()=>er).set("numcodecs.delta",()=>Jt).set("numcodecs.bitround",()=>De).set("numcodecs.json2",()=>Xe)}var qe=gc();function Ke(a){
-let e;function t(){return e||(e=yc(a)),e}async function r(n,s,o){try{return await o()}catch(i){throw new He({direction:n,
+fle",()=>er).set("numcodecs.delta",()=>Jt).set("numcodecs.bitround",()=>De).set("numcodecs.json2",()=>Xe)}var qe=xc();function Ke(a){
+let e;function t(){return e||(e=vc(a)),e}async function r(n,s,o){try{return await o()}catch(i){throw new He({direction:n,
 codec:s,cause:i})}}return{async encode(n){let s=await t();for(let{name:i,codec:c}of s.arrayToArray)n=await r("encode",i,
 ()=>c.encode(n));let o=await r("encode",s.arrayToBytes.name,()=>s.arrayToBytes.codec.encode(n));for(let{name:i,codec:c}of s.
 bytesToBytes)o=await r("encode",i,()=>c.encode(o));return o},async decode(n){let s=await t();for(let i=s.bytesToBytes.length-
@@ -1129,12 +1129,12 @@ name,()=>s.arrayToBytes.codec.decode(n));for(let i=s.arrayToArray.length-1;i>=0;
 o=await r("decode",c,()=>l.decode(o))}return o},async computeEncodedSize(n){let s=await t(),o=va(s.arrayToBytes.name,s.arrayToBytes.
 codec,n);for(let{name:i,codec:c}of s.bytesToBytes)o=va(i,c,o);return o}}}function va(a,e,t){if(!e.computeEncodedSize)throw new H(
 `Codec "${a}" cannot compute its encoded size; it is not a fixed-size codec and cannot be used in a sharding index pipel\
-ine`);return e.computeEncodedSize(t)}async function yc(a){let e=a.codecs.map(async o=>{let i=await qe.get(o.name)?.();if(!i)
+ine`);return e.computeEncodedSize(t)}async function vc(a){let e=a.codecs.map(async o=>{let i=await qe.get(o.name)?.();if(!i)
 throw new Be(o.name);return{Codec:i,meta:o}}),t=[],r,n=[],s={...a};for await(let{Codec:o,meta:i}of e){let c=o.fromConfig(
 i.configuration,s);switch(c.kind){case"array_to_array":t.push({name:i.name,codec:c}),c.getEncodedMeta&&(s=c.getEncodedMeta(
-s));break;case"array_to_bytes":r={name:i.name,codec:c};break;default:n.push({name:i.name,codec:c})}}if(!r){if(!xc(s))throw new H(
+s));break;case"array_to_bytes":r={name:i.name,codec:c};break;default:n.push({name:i.name,codec:c})}}if(!r){if(!wc(s))throw new H(
 `Cannot encode ${s.dataType} to bytes without a codec`);r={name:"bytes",codec:je.fromConfig({endian:"little"},s)}}return{
-arrayToArray:t,arrayToBytes:r,bytesToBytes:n}}function xc(a){return a.dataType!=="v2:object"&&a.dataType!=="string"}var wa=18446744073709551615n;function Ma(a,e,t,r){if(!a.store.getRange)throw new ye("sharding requires a store with getR\
+arrayToArray:t,arrayToBytes:r,bytesToBytes:n}}function wc(a){return a.dataType!=="v2:object"&&a.dataType!=="string"}var wa=18446744073709551615n;function Ma(a,e,t,r){if(!a.store.getRange)throw new ye("sharding requires a store with getR\
 ange");let n=a.store.getRange.bind(a.store),s=e.map((l,h)=>l/r.chunk_shape[h]),o=Ke({dataType:"uint64",shape:[...s,2],codecs:r.
 index_codecs,fillValue:null}),i=16*s.reduce((l,h)=>l*h,1),c={};return async(l,h)=>{let u=l.map((v,w)=>Math.floor(v/s[w])),
 m=a.resolve(t(u)).path;m in c||(c[m]=(async()=>{let v=await o.computeEncodedSize(i),w=await n(m,{suffixLength:v},h);return w?
@@ -1143,56 +1143,56 @@ g=l.map((v,w)=>v%d[w]).reduce((v,w,M)=>v+w*b[M],0),y=f[g],x=f[g+1];if(!(y===wa&&
 x)},h)}}var se=class a{store;path;constructor(e,t="/"){this.store=e,this.path=t}resolve(e){let t=new URL(`file://${this.path.endsWith(
 "/")?this.path:`${this.path}/`}`);return new a(this.store,decodeURIComponent(new URL(e,t).pathname))}};function sr(a){return new se(
 a??new Map)}var xe=class extends se{kind="group";#e;constructor(e,t,r){super(e,t),this.#e=r}get attrs(){return this.#e.attributes}};
-function Ea(a){return a.find(t=>t.name==="transpose")?.configuration?.order??"C"}function vc(a,e){let t=new Map(e.map((r,n)=>[
-r,n]));return a.filter(r=>t.has(r)).map(r=>t.get(r))}function Sa(a){return(e,t)=>{let r=globalThis.Array.isArray(a)&&t?vc(
-a,t):a;return jt(e,r)}}var nr=Symbol("zarrita.context");function wc(a,e){let{configuration:t}=e.codecs.find(da)??{},r={encodeChunkKey:ma(e.chunk_key_encoding),TypedArray:$t(e.data_type),
+function Ea(a){return a.find(t=>t.name==="transpose")?.configuration?.order??"C"}function Mc(a,e){let t=new Map(e.map((r,n)=>[
+r,n]));return a.filter(r=>t.has(r)).map(r=>t.get(r))}function Sa(a){return(e,t)=>{let r=globalThis.Array.isArray(a)&&t?Mc(
+a,t):a;return jt(e,r)}}var nr=Symbol("zarrita.context");function Ec(a,e){let{configuration:t}=e.codecs.find(da)??{},r={encodeChunkKey:ma(e.chunk_key_encoding),TypedArray:$t(e.data_type),
 fillValue:e.fill_value};if(t){let s=Ea(t.codecs);return{...r,kind:"sharded",chunkShape:t.chunk_shape,codec:Ke({dataType:e.
 data_type,shape:t.chunk_shape,codecs:t.codecs,fillValue:e.fill_value}),getStrides:Sa(s),getChunkBytes:Ma(a,e.chunk_grid.
 configuration.chunk_shape,r.encodeChunkKey,t)}}let n=Ea(e.codecs);return{...r,kind:"regular",chunkShape:e.chunk_grid.configuration.
 chunk_shape,codec:Ke({dataType:e.data_type,shape:e.chunk_grid.configuration.chunk_shape,codecs:e.codecs,fillValue:e.fill_value}),
 getStrides:Sa(n),async getChunkBytes(s,o){let i=r.encodeChunkKey(s),c=a.resolve(i).path;return a.store.get(c,o)}}}var he=class extends se{kind="\
-array";#e;[nr];constructor(e,t,r){super(e,t),this.#e={...r,fill_value:Xt(r)},this[nr]=wc(this,this.#e)}get attrs(){return this.#e.
+array";#e;[nr];constructor(e,t,r){super(e,t),this.#e={...r,fill_value:Xt(r)},this[nr]=Ec(this,this.#e)}get attrs(){return this.#e.
 attributes}get dimensionNames(){return this.#e.dimension_names}get fillValue(){return this.#e.fill_value}get shape(){return this.#e.
 shape}get chunks(){return this[nr].chunkShape}get dtype(){return this.#e.data_type}async getChunk(e,t,r){r?.useSharedArrayBuffer&&
 ha();let n=this[nr],s=await n.getChunkBytes(e,t);if(!s){let o=n.chunkShape.reduce((c,l)=>c*l,1),i;if(r?.useSharedArrayBuffer){
 let c=new n.TypedArray(0);if(!("BYTES_PER_ELEMENT"in c))console.warn("zarrita: useSharedArrayBuffer is not supported for\
  non-buffer-backed data types."),i=new n.TypedArray(o);else{let l=ua(o*c.BYTES_PER_ELEMENT,!0);i=new n.TypedArray(l,0,o)}}else
 i=new n.TypedArray(o);return i.fill(n.fillValue),{data:i,shape:n.chunkShape,stride:n.getStrides(n.chunkShape)}}return n.
-codec.decode(s)}is(e){return Wt(this.dtype,e)}};function Ta(a,e){let t=a;for(let r of e)t instanceof Promise?t=t.then(n=>r(n)):t=r(t);return t}function Aa(a,...e){return Ta(a,e)}async function Ra(a){let e=a.store.arrayExtensions;return e?.length?await Aa(a,...e):a}var ar=Mc();function Mc(){let a=new WeakMap;
+codec.decode(s)}is(e){return Wt(this.dtype,e)}};function Aa(a,e){let t=a;for(let r of e)t instanceof Promise?t=t.then(n=>r(n)):t=r(t);return t}function Ta(a,...e){return Aa(a,e)}async function Ra(a){let e=a.store.arrayExtensions;return e?.length?await Ta(a,...e):a}var ar=Sc();function Sc(){let a=new WeakMap;
 function e(t){let r=a.get(t)??{v2:0,v3:0};return a.set(t,r),r}return{increment(t,r){e(t)[r]+=1},versionMax(t){let r=e(t);
-return r.v3>r.v2?"v3":"v2"}}}async function Ec(a,e){let t=await a.store.get(a.resolve(".zattrs").path,{signal:e});return t?
-$e(t):{}}async function Sc(a,e={}){let t="store"in a?a:new se(a),{signal:r}=e,n={};return(e.attrs??!0)&&(n=await Ec(t,r)),
+return r.v3>r.v2?"v3":"v2"}}}async function Ac(a,e){let t=await a.store.get(a.resolve(".zattrs").path,{signal:e});return t?
+$e(t):{}}async function Tc(a,e={}){let t="store"in a?a:new se(a),{signal:r}=e,n={};return(e.attrs??!0)&&(n=await Ac(t,r)),
 r?.throwIfAborted(),e.kind==="array"?_a(t,n,r):e.kind==="group"?Pa(t,n,r):_a(t,n,r).catch(s=>(Br(s,q,H),Pa(t,n,r)))}async function _a(a,e,t){
 let{path:r}=a.resolve(".zarray"),n=await a.store.get(r,{signal:t});if(!n)throw new q("v2 array",{path:r});return ar.increment(
 a.store,"v2"),Ra(new he(a.store,a.path,pa($e(n),e)))}async function Pa(a,e,t){let{path:r}=a.resolve(".zgroup"),n=await a.
 store.get(r,{signal:t});if(!n)throw new q("v2 group",{path:r});return ar.increment(a.store,"v2"),new xe(a.store,a.path,fa(
-$e(n),e))}async function Tc(a,e){let{store:t,path:r}=a.resolve("zarr.json"),n=await a.store.get(r,{signal:e});if(!n)throw new q(
+$e(n),e))}async function _c(a,e){let{store:t,path:r}=a.resolve("zarr.json"),n=await a.store.get(r,{signal:e});if(!n)throw new q(
 "v3 array or group",{path:r});let s=$e(n);return s.node_type==="array"&&(s.fill_value=Xt(s)),s.node_type==="array"?Ra(new he(
-t,a.path,s)):new xe(t,a.path,s)}async function Ac(a,e={}){let t="store"in a?a:new se(a),r=await Tc(t,e.signal);if(ar.increment(
+t,a.path,s)):new xe(t,a.path,s)}async function Pc(a,e={}){let t="store"in a?a:new se(a),r=await _c(t,e.signal);if(ar.increment(
 t.store,"v3"),e.kind===void 0||e.kind==="array"&&r instanceof he||e.kind==="group"&&r instanceof xe)return r;let n=r instanceof
 he?"array":"group";throw new q(`${e.kind} at ${t.path}`,{path:t.path,found:n})}async function ee(a,e={}){let t="store"in
 a?a.store:a,r=ar.versionMax(t),n=r==="v2"?ee.v2:ee.v3,s=r==="v2"?ee.v3:ee.v2;return n(a,e).catch(o=>(Br(o,q,H),s(a,e)))}
-ee.v2=Sc;ee.v3=Ac;var La=[300,1e3,3e3],ka=2e4,Pc=[401,403,404,410],Fa=200,Rc=429,Lc=500,kc=2197175160,Hr=4,Oc=8,Fc=1<<28,$=class extends Error{fault;detail;constructor(e,t,r=t){
-super(t),this.fault=e,this.detail=r}},Nc=Array.from({length:4},(a,e)=>Uint32Array.from({length:256},(t,r)=>{let n=r;for(let s=0;s<
-8*(e+1);s+=1)n=n>>>1^(n&1?kc:0);return n}));function Ic(a){let[e,t,r,n]=Nc,s=a.length-a.length%4,o=4294967295;for(let i=0;i<
+ee.v2=Tc;ee.v3=Pc;var La=[300,1e3,3e3],ka=2e4,Lc=[401,403,404,410],Fa=200,kc=429,Oc=500,Fc=2197175160,Hr=4,Nc=8,Ic=1<<28,$=class extends Error{fault;detail;constructor(e,t,r=t){
+super(t),this.fault=e,this.detail=r}},Cc=Array.from({length:4},(a,e)=>Uint32Array.from({length:256},(t,r)=>{let n=r;for(let s=0;s<
+8*(e+1);s+=1)n=n>>>1^(n&1?Fc:0);return n}));function Uc(a){let[e,t,r,n]=Cc,s=a.length-a.length%4,o=4294967295;for(let i=0;i<
 s;i+=4)o^=a[i]|a[i+1]<<8|a[i+2]<<16|a[i+3]<<24,o=n[o&255]^r[o>>>8&255]^t[o>>>16&255]^e[o>>>24];for(let i=s;i<a.length;i+=
 1)o=o>>>8^e[(o^a[i])&255];return~o>>>0}async function Na(a,e){let t=[],r=0,n=a?.getReader();try{for(;;){let{done:o=!0,value:i}=await n?.
 read()??{};if(o||!i)break;t.push(i),r+=i.length,e(r)}}catch(o){throw n?.cancel().catch(()=>{}),o}let s=new Uint8Array(r);
 return t.reduce((o,i)=>(s.set(i,o),o+i.length),0),s}var Gr=class a{kind="bytes_to_bytes";static fromConfig(){return new a}encode(){
 throw new Error("nothing is written")}decode(e){let t=e.byteLength-Hr;if(t<0)throw new Error("the checksum is missing");
-let{buffer:r,byteOffset:n}=e,s=new DataView(r,n+t,Hr).getUint32(0,!0),o=new Uint8Array(r,n,t);if(s!==Ic(o))throw new Error(
+let{buffer:r,byteOffset:n}=e,s=new DataView(r,n+t,Hr).getUint32(0,!0),o=new Uint8Array(r,n,t);if(s!==Uc(o))throw new Error(
 "checksum mismatch");return o}computeEncodedSize(e){return e+Hr}},zr=class a{kind="bytes_to_bytes";most;constructor(e){this.
-most=e}static fromConfig(e,{shape:t}){return new a(Math.min(t.reduce((r,n)=>r*n,Oc),Fc))}encode(){throw new Error("nothi\
+most=e}static fromConfig(e,{shape:t}){return new a(Math.min(t.reduce((r,n)=>r*n,Nc),Ic))}encode(){throw new Error("nothi\
 ng is written")}async decode(e){let t=new Blob([e]).stream();return Na(t.pipeThrough(new DecompressionStream("gzip")),r=>{
 if(r>this.most)throw new Error(`a chunk unpacks to more than ${this.most} bytes`)})}};qe.set("gzip",()=>Promise.resolve(
-zr));qe.set("crc32c",()=>Promise.resolve(Gr));function Cc(a,e){return new Promise((t,r)=>{let n=()=>{clearTimeout(s),r(e.
-reason)},s=setTimeout(()=>{e.removeEventListener("abort",n),t()},a);e.addEventListener("abort",n,{once:!0})})}async function Uc(a,e){
+zr));qe.set("crc32c",()=>Promise.resolve(Gr));function Vc(a,e){return new Promise((t,r)=>{let n=()=>{clearTimeout(s),r(e.
+reason)},s=setTimeout(()=>{e.removeEventListener("abort",n),t()},a);e.addEventListener("abort",n,{once:!0})})}async function Dc(a,e){
 let t=new AbortController,r=()=>t.abort();e.addEventListener("abort",r,{once:!0});let n=setTimeout(r,ka);try{e.throwIfAborted();
 let{status:s,body:o}=await fetch(a,{signal:t.signal}),i=await Na(s===Fa?o:null,()=>{clearTimeout(n),n=setTimeout(r,ka)});
 return[s,i]}finally{t.abort(),clearTimeout(n),e.removeEventListener("abort",r)}}async function Oa(a,e){for(let t=0;;t+=1){
-let r="no server answers";try{let[n,s]=await Uc(a,e);if(n===Fa)return s;if(Pc.includes(n))return;if(r=`the server answer\
-s ${n}`,n<Lc&&n!==Rc)throw new $("broken",r)}catch(n){if(e.throwIfAborted(),n instanceof $)throw n}if(t===La.length)throw new $(
-"unreachable",r);await Cc(La[t],e)}}var or=class{url;described;shards=new Map;constructor(e,t){this.url=e,this.described=
+let r="no server answers";try{let[n,s]=await Dc(a,e);if(n===Fa)return s;if(Lc.includes(n))return;if(r=`the server answer\
+s ${n}`,n<Oc&&n!==kc)throw new $("broken",r)}catch(n){if(e.throwIfAborted(),n instanceof $)throw n}if(t===La.length)throw new $(
+"unreachable",r);await Vc(La[t],e)}}var or=class{url;described;shards=new Map;constructor(e,t){this.url=e,this.described=
 t}get=async(e,t)=>e.endsWith("/zarr.json")?this.description(e):this.object(e,t?.signal);getRange=async(e,t,r)=>{let n=this.
 shards.get(e)??this.object(e,r?.signal);this.shards.set(e,n);let s=await n;return"suffixLength"in t?s?.subarray(-t.suffixLength):
 s?.subarray(t.offset,t.offset+t.length)};async object(e,t=new AbortController().signal){let r=await Oa(this.url+e,t);if(!r)
@@ -1201,20 +1201,20 @@ url+e,new AbortController().signal);return this.described.set(e,r),r.catch(()=>t
 if(a instanceof $)return a;let e=a instanceof q&&!a.found?"missing":"broken";return new $(e,a instanceof Error?a.message:
 String(a))}var ir=class{url;described=new Map;constructor(e){this.url=e.replace(/\/+$/,"")}async attributes(){let e=new or(
 this.url,this.described);return(await ee.v3(sr(e),{kind:"group"})).attrs}async array(e){let t=new or(this.url,this.described),
-r=await ee.v3(sr(t).resolve(e),{kind:"array"});if(!r.is("number"))throw new $("broken",`${e} has no numbers`);return r}};var Vc=64,Dc=32,cr=4096,Bc=2**28,Hc=["padded","unit","open","nearest","normal","rays"],Gc={missing:"it is not in the sto\
+r=await ee.v3(sr(t).resolve(e),{kind:"array"});if(!r.is("number"))throw new $("broken",`${e} has no numbers`);return r}};var Bc=64,Hc=32,cr=4096,Gc=2**28,zc=["padded","unit","open","nearest","normal","rays"],Wc={missing:"it is not in the sto\
 re, or the store is not public.",broken:"its data in the store are corrupt.",unreachable:"the store does not answer. The\
- server or the network may be down, or the server does not allow this page to read it (CORS)."},zc=["format","fingerprin\
+ server or the network may be down, or the server does not allow this page to read it (CORS)."},$c=["format","fingerprin\
 t","parameter","lines"],ve=(a,e)=>Number.isInteger(a)&&Number(a)>0&&Number(a)<=e,j=(a,e)=>Array.isArray(a)&&a.every(Number.
-isFinite)&&(e??a.length)===a.length,Wc=(a,e)=>j(a,e)&&a.every(Number.isInteger);function $c({nodes:a,longest:e=0,poles:t=[]}){
+isFinite)&&(e??a.length)===a.length,jc=(a,e)=>j(a,e)&&a.every(Number.isInteger);function Xc({nodes:a,longest:e=0,poles:t=[]}){
 return Number.isFinite(e)&&t.length<=2&&t.every(({component:r,line:n,inward:s,near:o,plane:i})=>[0,1].includes(r)&&r===t[0].
-component&&n===(s>0?0:a[1-r]-1)&&[1,-1].includes(s)&&ve(o,cr)&&j(i,6))}function jc(a,{geometry:e,slices:t}){let{geometry:r,
+component&&n===(s>0?0:a[1-r]-1)&&[1,-1].includes(s)&&ve(o,cr)&&j(i,6))}function Yc(a,{geometry:e,slices:t}){let{geometry:r,
 slices:n}=a,{shape:s,rows:o,columns:i}=r,{trace:c}=n;if(!(j(s,2)&&s.every(h=>ve(h,cr)&&h>1)&&[o,i].every(({before:h,size:u},m)=>Number.
 isInteger(h)&&ve(u,cr)&&h>=0&&h+s[m]<=u)&&Number.isInteger(r.levels)&&r.levels>=0&&2**r.levels<=Math.max(o.size,i.size)&&
 r.triangles===e.triangles&&r.planar===e.planar&&Number.isFinite(r.extent)&&j(r.periodic.map(Number),2)&&j(r.center,3)&&j(
-r.frame,9)&&ve(n.count,Vc)&&[2,4].includes(n.channels)&&j(n.lags)&&ve(n.lags.length,Dc)&&n.sides===t.sides&&j(n.extra)&&
-n.extra.every(h=>Number.isInteger(h)&&h>=0&&h<n.count)&&j([n.unit,n.cell,n.critical])&&(!c||c.parts.every(h=>Hc.includes(
-h))&&j(c.nodes,2)&&c.nodes.every((h,u)=>ve(h,cr)&&c.drawn[u]+s[u]<=h)&&Wc([...c.first,...c.drawn],4)&&c.drawn.every(h=>h>=
-0)&&j(c.closed.map(Number),2)&&j([...c.offset,...c.middle,c.unit,c.pace,c.rest],12)&&$c(c)&&(!c.timed||j([c.timed.unit,c.
+r.frame,9)&&ve(n.count,Bc)&&[2,4].includes(n.channels)&&j(n.lags)&&ve(n.lags.length,Hc)&&n.sides===t.sides&&j(n.extra)&&
+n.extra.every(h=>Number.isInteger(h)&&h>=0&&h<n.count)&&j([n.unit,n.cell,n.critical])&&(!c||c.parts.every(h=>zc.includes(
+h))&&j(c.nodes,2)&&c.nodes.every((h,u)=>ve(h,cr)&&c.drawn[u]+s[u]<=h)&&jc([...c.first,...c.drawn],4)&&c.drawn.every(h=>h>=
+0)&&j(c.closed.map(Number),2)&&j([...c.offset,...c.middle,c.unit,c.pace,c.rest],12)&&Xc(c)&&(!c.timed||j([c.timed.unit,c.
 timed.speed],2)))))throw new Error("the header of a tile does not match the page")}function Ua({geometry:a,slices:e}){let{
 shape:t,planar:r}=a,{trace:n,count:s,channels:o,extra:i}=e,c=(p,...f)=>[...p,...f].reduce((d,b)=>d*b,1),l=[a.rows.size,a.
 columns.size],h=n?.nodes??[],u={cells:[Uint8Array,[c(t.map(p=>p-1))]],normal:[Int16Array,[c(t,3)]],scalars:[Float32Array,
@@ -1224,16 +1224,16 @@ columns.size],h=n?.nodes??[],u={cells:[Uint8Array,[c(t.map(p=>p-1))]],normal:[In
 o)]],u.extra=[Uint16Array,[c(l,i.length)]];let m=n?["mesh",...n.parts]:["mesh","position",...r?[]:["normal"]];return{sizes:u,
 needed:m}}function Wr(a,e,t){let{sizes:r}=Ua(e),n=e.geometry.shape.map(s=>Math.ceil((s-1)/t));for(let{name:s,data:o,shape:i}of a){
 let c=r[s.split("/")[0]];if(!(c?o instanceof c[0]&&c[1].includes(o.length):s==="mesh"&&o instanceof Float32Array&&i.length===
-3&&i[0]===n[0]&&i[1]===n[1]&&o.length===i[0]*i[1]*i[2]))throw new Error(`the part "${s}" of a tile has a wrong size`)}}function Xc(a,{
+3&&i[0]===n[0]&&i[1]===n[1]&&o.length===i[0]*i[1]*i[2]))throw new Error(`the part "${s}" of a tile has a wrong size`)}}function qc(a,{
 geometry:e,slices:t},r){let[n,s]=e.shape,[o,{drawn:i,nodes:c}={drawn:[0,0],nodes:[0,0]}]=[a.shape[2],t.trace],l=new Float32Array(
 n*s);for(let h=0;h<l.length;h+=1){let u=(Math.floor(h/s)+i[0])*c[1]+h%s+i[1];l[h]=r*Re[Number(a.data[o*(u+1)-1-Number(t.
 trace?.uncertain??!1)])]}return{name:"",data:l,shape:[n,s],digest:`${a.digest} speed`}}function Ca(a){let e=Ia(a);return e.
-fault==="other"||e.detail!==e.message?e:new $(e.fault,Gc[e.fault],e.message)}var lr=class{hasSteps=!0;atOnce=6;memory=18e7;header;told;url;store;headers=new Map;opening=null;constructor(e,t){
+fault==="other"||e.detail!==e.message?e:new $(e.fault,Wc[e.fault],e.message)}var lr=class{hasSteps=!0;atOnce=6;memory=18e7;header;told;url;store;headers=new Map;opening=null;constructor(e,t){
 let r=e.store;if(!r)throw new Error("the page does not say where its store is");this.header=e,this.told=r,this.url=new URL(
 r.url,t),this.store=new ir(this.url.href)}open(){return this.opening??=this.compare().catch(e=>{let t=Ca(e);throw t.fault===
 "unreachable"&&(this.opening=null),t}),this.opening}async compare(){let{url:e}=this.told;if(!/^https?:/.test(this.url.protocol)){
 let n=`This page reads its store from ${e} in the same folder, which browsers do not allow when the page is opened as a \
-file: open it from a web server.`;throw new $("other",n)}let t=(await this.store.attributes()).flowtex;if(zc.every(n=>t?.[n]===
+file: open it from a web server.`;throw new $("other",n)}let t=(await this.store.attributes()).flowtex;if($c.every(n=>t?.[n]===
 this.told[n]))return;let r=`The store at ${e} does not match this page: it has another flow, other paths or another vers\
 ion: export the page again.`;throw new $("other",r)}load=async(e,t,r,n)=>{let s=e??[this.told.depth,0,0],o=z(s);return this.
 loaded(r,async i=>{let c=t.filter(d=>!n(`slices/${d}`)&&!n(`flow/${d}`)),l=e?n("header")&&!c.length?this.headers.get(o):
@@ -1245,7 +1245,7 @@ e/${o}/${d.name}`})):f})};async loaded(e,t){let r=new AbortController;e.addEvent
 try{return await this.open(),e.throwIfAborted(),await t(r.signal)}catch(n){throw e.throwIfAborted(),Ca(n)}finally{r.abort()}}async file(e,t,r,n){
 let s=await this.store.array(`${t[0]}/${e}`),o=async f=>{let{data:d}=await s.getChunk([...r,f],{signal:n});if(!(d instanceof
 Uint8Array))throw new Error(`${s.path} is empty`);return d},i=await o(0),[c,l]=fr(i),h=c.reduce((f,{bytes:d})=>f+d,l);if(!ve(
-h,Bc))throw new Error(`a file of ${s.path} has a wrong size`);let u=new Uint8Array(Math.ceil(h/i.length)*i.length);u.set(
+h,Gc))throw new Error(`a file of ${s.path} has a wrong size`);let u=new Uint8Array(Math.ceil(h/i.length)*i.length);u.set(
 i);for(let f=1;f*i.length<h;f+=1)u.set(await o(f),f*i.length);let m=new Map;for(let f of rn(u.buffer)){let[d,b]=pe(f.name)??
 ["",f.name];if(d&&d!==z(t))throw new Error(`in place of tile ${z(t)} is ${d}`);m.set(b,{...f,name:b})}if(new TextDecoder().
 decode(m.get("of")?.data)!==this.told.fingerprint)throw new Error(`tile ${z(t)} belongs to another flow`);return m.delete(
@@ -1254,21 +1254,21 @@ decode(m.get("of")?.data)!==this.told.fingerprint)throw new Error(`tile ${z(t)} 
 values()],n,this.header.mesh.tileCells)}let s=new TextEncoder().encode(JSON.stringify(n)),o={name:"header",data:s,shape:[
 s.length],digest:`${this.told.fingerprint} ${z(e)} header`};return{header:n,parts:[o,...r.values()]}}tileHeader(e){let t=JSON.
 parse(new TextDecoder().decode(e?.data));if(t===null)return null;let{steps:r,times:n,timeUnit:s,dates:o,pace:i}=this.header.
-slices;return jc(t,this.header),{...t,slices:{...t.slices,steps:r,times:n,timeUnit:s,dates:o,pace:i}}}async flow(e,t,r){
+slices;return Yc(t,this.header),{...t,slices:{...t.slices,steps:r,times:n,timeUnit:s,dates:o,pace:i}}}async flow(e,t,r){
 let n=this.told.steps[t];return[...(await this.file("flow",e,[n,e[1],e[2]],r)).values()].map(o=>{let[i,c]=o.name.split("\
 /");if(Number(c)!==n)throw new Error(`in place of step ${n} is ${o.name}`);return{...o,name:`${i}/${t}`}})}async values(e,t,r,n,s,o){
 let i=new Map;for(;;){let{name:c,steps:l,number:h}=this.header.scalars,m=(l>1?r:[0]).map(d=>h?`scalars/${d}/${h}`:`scala\
 rs/${d}`),p=c===null?[]:m.filter(d=>!n(d)&&!i.has(d));if(!p.length)return[...i.values()];let f=await Promise.all(p.map(async d=>{
-let b=l>1?Y(d):0;if(!h&&this.told.derivesSpeed&&t.slices.trace){let[v]=await(o.get(b)??this.flow(e,b,s));return{...Xc(v,
+let b=l>1?Y(d):0;if(!h&&this.told.derivesSpeed&&t.slices.trace){let[v]=await(o.get(b)??this.flow(e,b,s));return{...qc(v,
 t,this.header.speed.typical),name:d}}let g=l>1?this.told.steps[b]:0,x=(await this.file("values",e,[g,e[1],e[2],h],s)).get(
 `scalars/${g}/${h}`);if(!x)throw new Error(`tile ${z(e)} has no values of step ${g}`);return{...x,name:d}}));Wr(f,t,this.
-header.mesh.tileCells);for(let d of f)i.set(d.name,d)}}};var Yc=4096,qc=4,Va=32,Kc=.25,Jc=1e4,Da=class{id;type="custom";renderingMode="2d";options;map=null;gl=null;programs=null;array=null;scene=null;pictures=[];look="";globe=!1;shownOpacity=1;close=null;asked=Promise.
+header.mesh.tileCells);for(let d of f)i.set(d.name,d)}}};var Kc=4096,Jc=4,Va=32,Zc=.25,Qc=1e4,Da=class{id;type="custom";renderingMode="2d";options;map=null;gl=null;programs=null;array=null;scene=null;pictures=[];look="";globe=!1;shownOpacity=1;close=null;asked=Promise.
 resolve(null);own;colours={};constructor(e){this.options=e,this.own={...e.settings},this.id=e.id}onAdd(e,t){this.onRemove(),
 this.map=e,this.gl=t;let r={context:t,counted:n=>n,free:()=>{}};this.programs=new Se(r),this.array=t.createVertexArray(),
 this.open(t).catch(n=>this.failed(n.message,""))}onRemove(){let{gl:e}=this;for(let t of this.pictures)t.dispose(e);this.
 close?.then(t=>t.dispose()),this.close=null,e?.deleteVertexArray(this.array),this.programs?.dispose(),this.map=this.gl=this.
 scene=null,[this.pictures,this.look]=[[],""]}async open(e){let{scene:t,opacity:r}=this.options,n=new URL(typeof t=="stri\
-ng"?t:"",location.href).href,{headers:s,parts:o}=typeof t=="string"?await Zc(n):t;if(this.gl!==e)return;let i=Qc(s[0]),c=new zt(
+ng"?t:"",location.href).href,{headers:s,parts:o}=typeof t=="string"?await el(n):t;if(this.gl!==e)return;let i=tl(s[0]),c=new zt(
 i,o.flatMap(([f,d,b])=>f?[]:[[d,b]]),new Map,new Map),l=i.store?new lr(i,n):c,h={header:i,settings:{...i.settings,...i.own,
 ...this.own},player:new ht};this.shownOpacity=r??s[0].opacity;let u=async(f,d)=>{let b=!0,g=new Ct(f,{...h,source:l,isComing:()=>b});
 d(g);for(let y of c.parts){let x=await c.kept(y);if(g.lifetime.isOver)break;g.setPart(x)}return b=!1,Object.keys(this.colours).
@@ -1292,7 +1292,7 @@ l=e.painter.shown;if(!o||!r||!c||!l)return null;let h=c.point.position,u={scene:
 [m,p]=ws(u,n.get("lonlat"))??[NaN,NaN],{path:f}=bs(u,s,r,e.rows);return{eastward:m,northward:p,values:c.point.values,path:f.
 map(d=>o.lngLatOf(d))}}async pointClose(e){let{scene:t}=this;if(!t)return null;let r=!1,n={...this.hostOf(()=>null),painted:()=>{
 r=!0},advanced:()=>{}},s=await(this.close??=t.make(n,f=>f.requests.open())),{box:o}=t.mercator,{pyramid:i,geometry:c}=t.
-header,l=Kc*(o[2]-o[0])/(i?.shapes[0]??c.shape)[1],[h,u,m]=e,p={up:[0,1,0],view_angle:30,position:[h,u,m+l],focal_point:e,
+header,l=Zc*(o[2]-o[0])/(i?.shapes[0]??c.shape)[1],[h,u,m]=e,p={up:[0,1,0],view_angle:30,position:[h,u,m+l],focal_point:e,
 parallel:!0,parallel_scale:l};return s.isVisible=!0,s.look(p,Va,Va,1),await Ha(()=>r&&s.painter.canPick&&!s.tiles?.pending&&
 !s.tiles?.missing.length),s.isVisible=!1,this.pointIn(s,e)}failed(e,t){this.map?.fire("error",{error:new Error([e,t].filter(
 Boolean).join(" "))})}render(e,t){let{map:r,scene:n,programs:s,array:o,opacity:i}=this;if(!r||!n||!s)return;let c=t.defaultProjectionData.
@@ -1301,13 +1301,13 @@ shaderData:m,getProjectionData:p}=t,f={gl:e,programs:s,array:o,shaderData:m,getP
 opacity:i};for(let d of u){let b=d.draw({...f,mercator:n.mercator,isRepeated:u.length===1});typeof b=="string"&&b?this.failed(
 "The flow cannot be drawn on the map.",b):b!==!0&&r.triggerRepaint()}}follow(e,{mercator:t,header:r,add:n},s){let{what:o,
 ratio:i,text:c}=Ba(e,s);if(c===this.look)return;let l=t.look(o,r.geometry.center[2]);l.length>this.pictures.length&&n(),
-[0,1].forEach(h=>{let{width:u=1,height:m=1}=l[h]??{},p=Math.sqrt(qc*o.width*o.height/(u*m));this.pictures[h]?.follow(l[h],
-Math.min(i,i*p,Yc/Math.max(u,m)))}),this.look=c,this.globe=s}get isComplete(){let{map:e,pictures:t}=this;return!e||!this.
+[0,1].forEach(h=>{let{width:u=1,height:m=1}=l[h]??{},p=Math.sqrt(Jc*o.width*o.height/(u*m));this.pictures[h]?.follow(l[h],
+Math.min(i,i*p,Kc/Math.max(u,m)))}),this.look=c,this.globe=s}get isComplete(){let{map:e,pictures:t}=this;return!e||!this.
 scene||!t.every(r=>r.isComplete)?!1:this.look===Ba(e,this.globe).text}};function Ba(a,e){let{clientWidth:t,clientHeight:r}=a.
 getCanvas(),n={center:a.unproject([t/2,r/2]),width:t,height:r,zoom:a.getZoom(),bearing:a.getBearing(),pitch:a.getPitch(),
 fov:a.getVerticalFieldOfView(),globe:e},s=a.getPixelRatio();return{what:n,ratio:s,text:JSON.stringify([n,s])}}async function Ha(a){
-let e=performance.now()+Jc;for(;!a()&&performance.now()<e;)await new Promise(requestAnimationFrame)}async function Zc(a){
+let e=performance.now()+Qc;for(;!a()&&performance.now()<e;)await new Promise(requestAnimationFrame)}async function el(a){
 let e=await fetch(a);if(!e.ok)throw new Error(`the scene ${a} cannot be read: the server answers ${e.status}`);return await e.
-json()}function Qc(a){let{earth:e}=a,t={land:null,coastlines:!1,graticule:!1};return{...a,ends:el(a),background:[0,0,0],
-opacity:1,earth:e&&{...e,...t}}}function el({earth:a,geometry:e,slices:t}){let{map:r}=a??{};if(!a||!r||!e.periodic[1])return null;
+json()}function tl(a){let{earth:e}=a,t={land:null,coastlines:!1,graticule:!1};return{...a,ends:rl(a),background:[0,0,0],
+opacity:1,earth:e&&{...e,...t}}}function rl({earth:a,geometry:e,slices:t}){let{map:r}=a??{};if(!a||!r||!e.periodic[1])return null;
 let n=.5*(r[0]+r[2]),s=.5*(t.trace?.offset[3]??2*Math.PI*a.radius);return[n-s,n+s]}export{Da as FlowtexLayer};

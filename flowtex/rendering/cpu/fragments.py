@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flowtex._util.array_types import Floats, Indices
+from flowtex._util.arrays import smoothstep
 from flowtex.field.triangles.triangle_nodes import normals_at_corners
 from flowtex.rendering.cpu.path import Places, TrianglePlaces
 from flowtex.rendering.cpu.raster import Coverage
@@ -93,6 +94,24 @@ class Fragments:
         first = np.cross(dy, across)
         second = np.cross(across, dx)
         return np.asarray(at.dx[:, :, None] * first[:, None] + at.dy[:, :, None] * second[:, None])
+
+    def rim(self, eye: Floats) -> Floats:
+        """Return the factor of the texture, (N,), less at the outlines of a smooth surface.
+
+        The eye is ``u_eye``, (4,).
+        """
+        normal = self.normal
+        if normal is None:
+            return np.ones(len(self))
+        ray = _unit(eye[:3] - eye[3] * self.position.value)
+        aslant = np.abs(np.einsum("nc,nc->n", normal.value, ray))
+        by_x = np.einsum("nc,nc->n", normal.dx, ray)
+        by_y = np.einsum("nc,nc->n", normal.dy, ray)
+        change = np.maximum(np.hypot(by_x, by_y), const.LEAST_SQUARE)
+        # The square of how a curved surface faces the eye grows evenly from its outline.
+        shown = smoothstep(const.RIM_HIDDEN, const.RIM_SHOWN, 0.5 * aslant / change)
+        cosine = aslant / np.maximum(np.linalg.norm(normal.value, axis=-1), const.LEAST_SQUARE)
+        return np.maximum(shown, smoothstep(const.RIM_ASLANT, const.RIM_FACING, cosine))
 
     def __len__(self) -> int:
         """Count the fragments."""

@@ -15,6 +15,7 @@ from flowtex.rendering.cpu.cell import unit
 from flowtex.rendering.cpu.fragments import Fragments, Varying, footprint, on_surface
 from flowtex.rendering.cpu.mipmaps import Mips
 from flowtex.rendering.cpu.texture import Lookup, Sums, shared
+from flowtex.rendering.even import DrawnGrains
 from flowtex.rendering.shaders import const
 from flowtex.rendering.uniforms import Values
 from flowtex.textures.images import ImageTextures
@@ -194,6 +195,12 @@ class SpaceNoise(Lookup):
         self._pixel = np.sqrt(longest * np.maximum(shortest, const.LEAST_ROUND * longest))
         if not values["u_lod"]:
             self._pixel = np.full(len(fragments), texel / values["u_grain"])
+        self._set_grain()
+
+    def _set_grain(self) -> None:
+        """Choose the octaves for grains of pixels of this size."""
+        values = self._values
+        texel = values["u_texel"]
         grain = self._pixel * values["u_grain"]
         if values["u_fixed"]:
             grain = np.maximum(grain, texel)
@@ -202,30 +209,31 @@ class SpaceNoise(Lookup):
         octaves = np.clip(2.0 * np.log2(grain / values["u_noiseFinest"]), 0.0, const.LAST_OCTAVE)
         octave_numbers = octaves.astype(np.int64)
         self._late = octaves - octave_numbers
-        offset = position.value - np.asarray(values["u_noiseOrigin"])
+        offset = self._position.value - np.asarray(values["u_noiseOrigin"])
         self._fine, self._coarse = (
             noise_lattice(offset, octave_numbers + k, values) for k in range(2)
         )
 
-    def stretch(self, tangent: Floats) -> Floats:
-        """Return how many times as long streaks along tangents (N, 3) are on the surface, (N,).
-
-        In the picture they are then as long as where the surface faces the eye.
-        """
+    def face(self, tangent: Floats) -> DrawnGrains:
+        """Make grains larger whose streaks would be finer than pixels, along an outline."""
         values = self._values
         position = self._position
-        if values["u_fixed"] or not values["u_lod"]:
-            return np.ones(len(tangent))
+        usual = super().face(tangent)
+        if not values["u_lod"]:
+            return usual
         normal = unit(np.cross(position.dx, position.dy))
         across = unit(np.cross(normal, tangent))
         by_x = np.einsum("nc,nc->n", position.dx, across)
         by_y = np.einsum("nc,nc->n", position.dy, across)
-        side = np.maximum(np.hypot(by_x, by_y), np.finfo(float).tiny)
-        stretch = self._area / (side * self._pixel)
-        stretch = np.clip(stretch, 1.0 / const.MOST_STRETCH, const.MOST_STRETCH)
-        has_no_direction = np.einsum("nc,nc->n", across, across) < 0.5
-        is_usual = (np.abs(stretch - 1.0) < const.LEAST_STRETCH) | has_no_direction
-        return np.where(is_usual, 1.0, stretch)
+        side = np.hypot(by_x, by_y)
+        self._pixel = np.maximum(self._pixel, const.LEAST_ACROSS * side)
+        self._set_grain()
+        if values["u_fixed"]:
+            return usual
+        has_direction = side > 0
+        side = np.where(has_direction, side, self._pixel)
+        along = np.where(has_direction, self._pixel * side / self._area, 1.0)
+        return DrawnGrains(self._pixel / side, along)
 
     def move(self, slope: Floats, speed: Floats) -> None:
         """Choose the two rates between which the motion of each fragment lies."""

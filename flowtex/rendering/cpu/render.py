@@ -92,7 +92,7 @@ def render(
         summing = Summing(slices, values, part_lookup, by_lag=textures.image is not None)
         texture, factor = summing.shares(part.place, level[selection], part.by)
         value.append(texture)
-        share.append(factor)
+        share.append(factor * part.rim(np.asarray(values["u_eye"])))
         noise_level.append(part_lookup.level)
     image = partial(_image, pixel=coverage.pixel, size=size)
     texture = image(np.concatenate(value[1:] or value))

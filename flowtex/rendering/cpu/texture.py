@@ -12,7 +12,7 @@ from flowtex._util.array_types import Floats
 from flowtex.rendering.cpu.cell import CellPath, unit
 from flowtex.rendering.cpu.fragments import Fragments
 from flowtex.rendering.cpu.path import AxisSlices, Path, Places, Slices, TrianglePlaces, moved
-from flowtex.rendering.even import even_gain
+from flowtex.rendering.even import DrawnGrains, even_gain
 from flowtex.rendering.shaders import const
 from flowtex.rendering.uniforms import Values
 
@@ -36,9 +36,10 @@ class Lookup(Protocol):
         """Take the slopes at lag zero and the speeds, (N,), before the first look-up."""
         return
 
-    def stretch(self, tangent: Floats) -> Floats:
-        """Return the factor of the number of samples, (N,), for tangents (N, 3) of the flow."""
-        return np.ones(len(tangent))
+    def face(self, tangent: Floats) -> DrawnGrains:
+        """Take tangents (N, 3) of the flow, before all else, and return the sizes of grains."""
+        one = np.ones(len(tangent))
+        return DrawnGrains(one, one)
 
     def lookup(self, displacement: Floats, length: Floats) -> Floats:
         """Values (N, C) at displacements (N, 3) from the fragments, ``length`` (N,) on the way."""
@@ -118,8 +119,9 @@ class Summing:
         base = self._slices.layer(coordinate, 0, level)
         speed = np.linalg.norm(base[:, :3], axis=-1)
         certainty = self.certainty(coordinate, level)
+        grains = lookup.face(base[:, :3])
         lookup.move(speed, np.maximum(self._shown(coordinate, level), 0.0))
-        count = self.count(base, certainty)
+        count = self.count(grains, certainty)
         cell = self.cell(coordinate, count)
         self._parting = np.zeros(len(base))
         if values["sparse"] and not isinstance(self._slices, AxisSlices):
@@ -137,7 +139,7 @@ class Summing:
         share = self.faded(coordinate, level, certainty)
         if values["u_even"]:
             near = sums.neighbours / sums.squares
-            share = share * even_gain(near, lookup.stretch(base[:, :3]), values)
+            share = share * even_gain(near, grains, values)
         return lookup.blend(sums), share
 
     def _parted(
@@ -210,12 +212,12 @@ class Summing:
             reach = np.where(speed > const.LEAST_SPEED, next_[:, 3], -np.inf)
             yield Side(sign, path, spacing, reach, scale)
 
-    def count(self, base: Floats, certainty: Floats) -> Floats:
-        """Return the number of samples on a side, (N,), for layer 0 (N, 4) and certainties (N,)."""
+    def count(self, grains: DrawnGrains, certainty: Floats) -> Floats:
+        """Return the number of samples on a side, (N,), for grains and certainties (N,)."""
         count: int = self._values["u_samples"] - 1
         if self._values["u_sides"] == 2:
             count = self._values["u_samples"] // 2
-        return count * certainty * self._lookup.stretch(base[:, :3])
+        return count * certainty * grains.stretch
 
     def _add(self, sums: Sums, side: Side, cell: CellPath | None, count: Floats) -> None:
         """Add one side of the paths, of this many samples (N,), and where it stays in its cell."""
