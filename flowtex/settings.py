@@ -134,9 +134,12 @@ class Setting:
         """Condition under which the setting has an effect, as a sentence; empty if always."""
         needs = []
         for name, sign, value in NEEDS.get(self.name, ()):
-            needs.append(
-                f"{TABLE[name].label} {'≠' if sign == '!=' else '='} {TABLE[name].format(value)}"
-            )
+            label = TABLE[name].label
+            text = TABLE[name].format(value)
+            if sign == "!=":
+                needs.append(f"{label} ≠ {text}")
+            else:
+                needs.append(f"{label} = {text}")
         if needs:
             return f"Requires {' or '.join(needs)}."
         return ""
@@ -200,7 +203,12 @@ class Signal:
         """Call a function at each event, after the others; the returned function disconnects it."""
         listeners = self._listeners
         listeners.append(listener)
-        return lambda: listeners.remove(listener) if listener in listeners else None
+
+        def disconnect() -> None:
+            if listener in listeners:
+                listeners.remove(listener)
+
+        return disconnect
 
     def emit(self, *values: object) -> None:
         """Call the connected functions with these values."""
@@ -383,7 +391,8 @@ class Settings:
 
     def __iter__(self) -> Iterator[tuple[str, Any]]:
         """Yield (name, value) of every setting."""
-        return ((name, getattr(self, name)) for name in TABLE)
+        for name in TABLE:
+            yield name, getattr(self, name)
 
 
 def setting(name: str) -> Setting:

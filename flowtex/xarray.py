@@ -9,7 +9,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
 
@@ -179,18 +179,10 @@ class FlowtexAccessor:
         >>> len(panels.axs.flat)
         4
         """
-        turned = float(getattr(transform, "proj4_params", {}).get("pm", 0))
-        if type(transform).__name__ not in ("NoneType", "Geodetic", "PlateCarree") or turned:
-            raise flowtex.FieldError(
-                f"transform is {brief(transform)}; expected ccrs.PlateCarree() or none: the "
-                "positions follow from the longitudes and latitudes of the data"
-            )
-        options |= {"u": u, "v": v}
-        options |= {} if hue is None else {"scalars": hue}
-        options |= {"clim": "robust"} if robust else {}
+        _check_transform(transform)
         if norm is not None:
             _check_alone(norm, vmin=vmin, vmax=vmax, levels=levels)
-            options["norm"] = norm
+        options |= {"u": u, "v": v, **_colour_options(hue, norm, robust=robust)}
         dataset = placed_on(self._dataset, x, y)
         panels: FacetGrid[xr.Dataset] | None = None
         if row is None and col is None:
@@ -208,8 +200,7 @@ class FlowtexAccessor:
                 aspect=aspect or PANEL_ASPECT,
                 subplot_kws=dict(subplot_kws or {}),
             )
-            pairs = zip(panels.axs.flat, panels.name_dicts.flat, strict=True)
-            shown = [(panel, dataset.loc[n]) for panel, n in pairs if n is not None]
+            shown = _parts_of(panels, dataset)
         else:
             raise flowtex.FieldError(
                 "ax is given, but row and col make their own axes; omit ax, or row and col"
@@ -217,25 +208,17 @@ class FlowtexAccessor:
         images = [flowtex.axes(panel, data, **options) for panel, data in shown]
         label = images[0].colour_label
         if label:
-            ends = np.array([image.get_clim() for image in images])
-            for image in images:
-                low, high = ends[:, 0].min(), ends[:, 1].max()
-                image.set_clim(low if vmin is None else vmin, high if vmax is None else vmax)
-                if levels is not None:
-                    image.set_norm(_levels_norm(levels, image))
+            _share_colours(images, vmin, vmax, levels)
         for panel, _ in shown:
-            panel.set(**{k: v for k, v in (("xlim", xlim), ("ylim", ylim)) if v is not None})
+            _set_limits(panel, xlim, ylim)
+        beside: Any = shown[0][0]
         if panels is not None:
-            for panel in panels.axs.flat:
-                panel.set_title("")
-                panel.set_visible(any(panel is used for used, _ in shown))
-            panels.set_titles()
-            panels.fig.set_layout_engine("constrained")
+            _finish_panels(panels)
+            beside = list(panels.axs.flat)
         if label and add_colorbar:
-            beside = shown[0][0] if panels is None else list(panels.axs.flat)
-            figure = images[0].axes.figure
-            figure.colorbar(images[0], ax=beside, **{"label": label, **(cbar_kwargs or {})})
-        return images[0] if panels is None else panels
+            bar_options = {"label": label, **(cbar_kwargs or {})}
+            images[0].axes.figure.colorbar(images[0], ax=beside, **bar_options)
+        return panels or images[0]
 
     def pyramid(self, store: str | Path, **options: Any) -> Built:
         """Build a pyramid of the flow, as :func:`flowtex.pyramid.build` does."""
@@ -277,3 +260,71 @@ def _axes(figsize: tuple[float, float] | None, options: Mapping[str, Any]) -> Ax
     if figsize is None and not options:
         return plt.gca()
     return cast("Axes", plt.figure(figsize=figsize).add_subplot(**options))
+
+
+def _check_transform(transform: Any) -> None:
+    """Check that a transform is none, or one from longitudes and latitudes."""
+    turned = float(getattr(transform, "proj4_params", {}).get("pm", 0))
+    if type(transform).__name__ not in ("NoneType", "Geodetic", "PlateCarree") or turned:
+        raise flowtex.FieldError(
+            f"transform is {brief(transform)}; expected ccrs.PlateCarree() or none: the "
+            "positions follow from the longitudes and latitudes of the data"
+        )
+
+
+def _parts_of(panels: FacetGrid[xr.Dataset], dataset: xr.Dataset) -> list[tuple[Any, xr.Dataset]]:
+    """Return the axes of each panel that has data, and the part of the dataset that it shows."""
+    parts = []
+    for panel, place in zip(panels.axs.flat, panels.name_dicts.flat, strict=True):
+        if place is not None:
+            parts.append((panel, dataset.loc[place]))
+    return parts
+
+
+def _colour_options(hue: str | None, norm: Any, *, robust: bool) -> dict[str, Any]:
+    """Return those options of :func:`flowtex.axes` for colours that are given."""
+    options: dict[str, Any] = {}
+    if hue is not None:
+        options["scalars"] = hue
+    if robust:
+        options["clim"] = "robust"
+    if norm is not None:
+        options["norm"] = norm
+    return options
+
+
+def _set_limits(
+    panel: Axes, xlim: tuple[float, float] | None, ylim: tuple[float, float] | None
+) -> None:
+    """Set the limits of axes that are given."""
+    if xlim is not None:
+        panel.set(xlim=xlim)
+    if ylim is not None:
+        panel.set(ylim=ylim)
+
+
+def _share_colours(
+    images: Sequence[FlowImage],
+    vmin: float | None,
+    vmax: float | None,
+    levels: int | ArrayLike | None,
+) -> None:
+    """Give images the same range of colours, by default the range of all of them."""
+    lows, highs = np.transpose([image.get_clim() for image in images])
+    if vmin is None:
+        vmin = lows.min()
+    if vmax is None:
+        vmax = highs.max()
+    for image in images:
+        image.set_clim(vmin, vmax)
+        if levels is not None:
+            image.set_norm(_levels_norm(levels, image))
+
+
+def _finish_panels(panels: FacetGrid[xr.Dataset]) -> None:
+    """Hide the panels without data, and write the titles of the others."""
+    for panel, place in zip(panels.axs.flat, panels.name_dicts.flat, strict=True):
+        panel.set_title("")
+        panel.set_visible(place is not None)
+    panels.set_titles()
+    panels.fig.set_layout_engine("constrained")

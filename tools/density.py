@@ -17,12 +17,12 @@ from pathlib import Path
 
 #: Greatest numbers in flowtex.
 LIMITS = {
-    "comprehensions": 31.0,
-    "conditional expressions": 13.0,
-    "parallel assignments": 3.0,
-    "bodies over 40 lines": 28.0,
-    "nested comprehensions": 75.0,
-    "nested conditional expressions": 6.0,
+    "comprehensions": 22.0,
+    "conditional expressions": 6.0,
+    "parallel assignments": 2.0,
+    "bodies over 40 lines": 20.0,
+    "nested comprehensions": 45.0,
+    "nested conditional expressions": 3.0,
 }
 #: Of these the number for each 1,000 lines of code is limited.
 PER_THOUSAND_LINES = ("comprehensions", "conditional expressions", "parallel assignments")

@@ -15,7 +15,8 @@ BLOCK_NODES = 16384
 def row_blocks(rows: int, columns: int) -> Iterator[slice]:
     """Yield slices of rows of a grid, of some thousand nodes each."""
     height = max(BLOCK_NODES // columns, 1)
-    return (slice(first, min(first + height, rows)) for first in range(0, rows, height))
+    for first in range(0, rows, height):
+        yield slice(first, min(first + height, rows))
 
 
 def even_runs(numbers: Indices) -> Iterator[slice]:
@@ -36,7 +37,10 @@ def even_runs(numbers: Indices) -> Iterator[slice]:
             step = 1
             count = 0
         stop = int(numbers[first + count]) + step
-        yield slice(int(numbers[first]), stop if stop >= 0 else None, step)
+        if stop >= 0:
+            yield slice(int(numbers[first]), stop, step)
+        else:
+            yield slice(int(numbers[first]), None, step)
         first += count + 1
 
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import copy
 import re
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from functools import cache, cached_property
 from typing import Any
@@ -96,16 +96,22 @@ def colour_table(cmap: Any | None, count: int | None = None, *, flip: bool = Fal
         table = _resampled(np.asarray(values), count or ENTRIES)
     else:
         name = cmap or DEFAULT_CMAP
-        is_usual = isinstance(name, str) and name in CMAPS  # each tile needs it
-        table = (_cached_table if is_usual else _named_table)(name, count or ENTRIES)
-    return (table[::-1] if flip else table).copy()
+        if isinstance(name, str) and name in CMAPS:
+            table = _cached_table(name, count or ENTRIES)  # each tile needs it
+        else:
+            table = _named_table(name, count or ENTRIES)
+    if flip:
+        table = table[::-1]
+    return table.copy()
 
 
 def colour_map(cmap: Any | None, count: int | None = None, *, flip: bool = False) -> Any:
     """Return the matplotlib colour map of what :func:`colour_table` accepts."""
     from matplotlib.colors import Colormap, ListedColormap
 
-    colours = _known(DEFAULT_CMAP if cmap is None else cmap)
+    if cmap is None:
+        cmap = DEFAULT_CMAP
+    colours = _known(cmap)
     if not isinstance(colours, Colormap):
         colours = ListedColormap(colour_table(cmap)[:, :3] / 255)
     if count is not None:
@@ -153,19 +159,24 @@ def is_diverging(cmap: Any) -> bool:
 
 
 def rounded_ends(low: float, high: float, *, log_scale: bool) -> tuple[float, float]:
-    """Return the ends of a legend: one that is 0 up to rounding is 0."""
+    """Return the ends of a legend; an end that is 0 except for rounding becomes 0."""
     if log_scale:
-        least = 0.0
-    else:
-        least = ZERO_SHARE * max(abs(low), abs(high))
-    return (low if abs(low) >= least else 0.0), (high if abs(high) >= least else 0.0)
+        return low, high
+    rounding = ZERO_SHARE * max(abs(low), abs(high))
+    if abs(low) < rounding:
+        low = 0.0
+    if abs(high) < rounding:
+        high = 0.0
+    return low, high
 
 
 def _resampled(colours: AnyArray, count: int) -> Bytes:
     """Return a table (count, 4) uint8 from colours (N, 3 or 4), floats from 0 to 1 or bytes."""
     if colours.ndim != 2 or colours.shape[1] not in (3, 4) or not len(colours):
         raise FieldError(f"cmap has shape {colours.shape}; expected a name, or (N, 3) or (N, 4)")
-    values = colours.astype(float) * (255.0 if colours.dtype.kind == "f" else 1.0)
+    values = colours.astype(float)
+    if colours.dtype.kind == "f":
+        values *= 255.0
     table = np.full((count, 4), 255.0)
     number = np.arange(count) * len(values) // count
     if count < len(values):  # with the first and the last
@@ -229,12 +240,14 @@ class ColourScale:
         the first row; else 0.
         """
         table = self.table[:, :3] / 255
-        ends = (
-            (table[0] if self.below is None else self.below),
-            (table[-1] if self.above is None else self.above),
-        )
+        below = self.below
+        if below is None:
+            below = table[0]
+        above = self.above
+        if above is None:
+            above = table[-1]
         texels = np.zeros((len(table) + 3, 4))
-        texels[:, :3] = np.vstack([ends[0], table, ends[1], self.nan])
+        texels[:, :3] = np.vstack([below, table, above, self.nan])
         if self.edges is not None:
             texels[1:-2, 3] = (self.edges[:-1] - self.low) / (self.high - self.low)
             texels[0, 3] = 1
@@ -324,8 +337,10 @@ def norm_scale(norm: Any, cmap: Any, **beyond: Any) -> ColourScale:
 
     def places(values: Floats) -> Floats:
         found = norm(values)
-        whole = np.asarray(found).dtype.kind in "iu"  # numbers of colours
-        return np.ma.filled(np.ma.asarray(found, dtype=float), np.nan) / (cmap.N if whole else 1)
+        filled = np.ma.filled(np.ma.asarray(found, dtype=float), np.nan)
+        if np.asarray(found).dtype.kind in "iu":  # numbers of colours
+            filled /= cmap.N
+        return filled
 
     known = places(np.linspace(low, high, NORM_ENTRIES + 1))
     is_increasing = np.isfinite(known).all() and (np.diff(known) >= -ROUNDING).all()
@@ -341,29 +356,44 @@ def norm_scale(norm: Any, cmap: Any, **beyond: Any) -> ColourScale:
         numbers = np.arange((len(boundaries) - 1) * parts + 1) / parts
         edges = np.interp(numbers, np.arange(len(boundaries)), boundaries)
     else:
-        shares = np.linspace(0, 1, NORM_ENTRIES + 1)
-        lower = np.full(len(shares), low)
-        edges = np.full(len(shares), high)
-        for _ in range(BISECTIONS):
-            middle = lower + (edges - lower) / 2
-            reached = places(middle) >= shares
-            lower = np.where(reached, lower, middle)
-            edges = np.where(reached, middle, edges)
-        edges[0], edges[-1] = low, high
+        edges = _even_edges(places, low, high)
     table = (255 * np.asarray(cmap(norm((edges[:-1] + edges[1:]) / 2)))).astype(np.uint8)
     outside = np.ma.filled(norm(np.array([2 * low - high, 2 * high - low])), -1)
-    ends = [tuple(colour[:3].tolist()) for colour in np.asarray(cmap(outside))]
-    given = {name: value for name, value in beyond.items() if value is not None}
-    return ColourScale(
-        table, low, high, edges=edges, norm=norm, **{"below": ends[0], "above": ends[1], **given}
-    )
+    below, above = np.asarray(cmap(outside))[:, :3].tolist()
+    if beyond.get("below") is None:
+        beyond["below"] = tuple(below)
+    if beyond.get("above") is None:
+        beyond["above"] = tuple(above)
+    if beyond.get("nan") is None:
+        beyond.pop("nan", None)
+    return ColourScale(table, low, high, edges=edges, norm=norm, **beyond)
+
+
+def _even_edges(places: Callable[[Floats], Floats], low: float, high: float) -> Floats:
+    """Return values from low to high whose places on a colour map are evenly spaced, by bisection.
+
+    ``places`` returns the place of each value, from 0 to 1.
+    """
+    shares = np.linspace(0, 1, NORM_ENTRIES + 1)
+    lower = np.full(len(shares), low)
+    edges = np.full(len(shares), high)
+    for _ in range(BISECTIONS):
+        middle = lower + (edges - lower) / 2
+        reached = places(middle) >= shares
+        lower = np.where(reached, lower, middle)
+        edges = np.where(reached, middle, edges)
+    edges[0] = low
+    edges[-1] = high
+    return edges
 
 
 def scale_of(look: Any, limits: tuple[float, float]) -> ColourScale:
     """Return the colours of an appearance, which has some limits."""
-    ends = look.below_color, look.above_color
-    below, above = (None if colour is None else rgb(colour) for colour in ends)
-    beyond: dict[str, Any] = {"below": below, "above": above, "nan": rgb(look.nan_color)}
+    beyond: dict[str, Any] = {"nan": rgb(look.nan_color)}
+    if look.below_color is not None:
+        beyond["below"] = rgb(look.below_color)
+    if look.above_color is not None:
+        beyond["above"] = rgb(look.above_color)
     form = look.cmap, look.n_colors
     if look.norm is None or look.scalar_name is None:
         table = colour_table(*form, flip=look.flip_scalars)

@@ -116,7 +116,7 @@ def _call_after() -> None:
 
 
 def _forget_threads_of_dask() -> None:
-    """Have dask start threads of this process: it would wait for those before the fork."""
+    """Have dask start new threads: threads from before the fork do not run here."""
     threaded = sys.modules.get("dask.threaded")
     if threaded is None:
         return

@@ -116,9 +116,9 @@ def _address_space(root: Path) -> Iterator[int]:
 
 def _table(path: Path) -> dict[str, int]:
     """Return the numbers by name in a file with a name and a number on each line."""
-    rows = [line.split() for line in _text(path).splitlines()]
     found = {}
-    for row in rows:
+    for line in _text(path).splitlines():
+        row = line.split()
         if len(row) > 1 and row[1].isdecimal():
             found[row[0]] = int(row[1])
     return found

@@ -85,10 +85,10 @@ def announce_end(number: int) -> None:
 
 @contextmanager
 def ended_by_signals() -> Iterator[None]:
-    """Raise :class:`Ended` on the first signal, also on that of Ctrl-C.
+    """Raise :class:`Ended` on the first signal, also after Ctrl-C.
 
-    VTK ends the program with the code 1 where a KeyboardInterrupt passes through one of its
-    callbacks, and with that of the signal where this error does.
+    Where a KeyboardInterrupt passes through a callback of VTK, the program ends with the code 1;
+    where this error does, with the code of the signal.
 
     So incomplete files and temporary folders are removed. A later signal does not interrupt the
     end. If a callback of a library swallowed the error, a later signal raises it again. A signal
@@ -107,10 +107,12 @@ def ended_by_signals() -> Iterator[None]:
             return
         raise Ended(received[0])
 
-    before = {s: signal.getsignal(s) for s in (signal.SIGINT, *SIGNALS)}
-    if threading.current_thread() is not threading.main_thread():
-        before = {}
-    before = {s: handler for s, handler in before.items() if handler not in (signal.SIG_IGN, None)}
+    before = {}
+    if threading.current_thread() is threading.main_thread():
+        for signum in (signal.SIGINT, *SIGNALS):
+            handler = signal.getsignal(signum)
+            if handler not in (signal.SIG_IGN, None):
+                before[signum] = handler
     for signum in before:
         signal.signal(signum, end)
     try:

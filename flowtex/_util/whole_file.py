@@ -156,7 +156,7 @@ def whole_file(path: str | Path) -> Iterator[IO[bytes]]:
 
 
 def _old_file(target: Path) -> os.stat_result | None:
-    """Return the status of the file that is replaced; refuse one that must not be."""
+    """Return the status of the file to replace; refuse a file that must not be replaced."""
     try:
         old = target.stat()
     except FileNotFoundError:

@@ -39,18 +39,28 @@ def numbers(*counts: int, expected: str) -> Callable[[str], tuple[float, ...]]:
 
     def read(text: str) -> tuple[float, ...]:
         words = re.split(r"[,\s]+", text.strip())
-        values = [number_or_text(word) for word in words]
-        finite = tuple(v for v in values if isinstance(v, float) and math.isfinite(v))
-        if len(finite) < len(words) or len(words) not in counts:
+        if len(words) not in counts:
             raise UnreadableError(expected)
-        return finite
+        values = []
+        for word in words:
+            value = number_or_text(word)
+            if not isinstance(value, float) or not math.isfinite(value):
+                raise UnreadableError(expected)
+            values.append(value)
+        return tuple(values)
 
     return read
 
 
 def or_none(value: Any = None) -> Callable[[str], Any]:
     """Return a function that reads any text, and ``none`` as ``value``."""
-    return lambda text: value if text == "none" else text
+
+    def read(text: str) -> Any:
+        if text == "none":
+            return value
+        return text
+
+    return read
 
 
 def named_texts(
@@ -59,13 +69,17 @@ def named_texts(
     """Return a function that reads texts such as ``name=value``, each value by ``read``."""
 
     def read_all(texts: Sequence[str]) -> dict[str, Any]:
-        pairs = [text.partition("=") for text in texts]
-        try:
-            if all(name and value for name, _, value in pairs):
-                return {name.strip(): read(value) for name, _, value in pairs}
-        except ValueError:
-            pass
-        raise UnreadableError(expected)
+        """Return the values by name."""
+        values = {}
+        for text in texts:
+            name, _, value = text.partition("=")
+            if not name or not value:
+                raise UnreadableError(expected)
+            try:
+                values[name.strip()] = read(value)
+            except ValueError:
+                raise UnreadableError(expected) from None
+        return values
 
     return read_all
 

@@ -110,9 +110,11 @@ class FlowApp:
         self.server = server or get_server(f"flowtex-{id(self)}")
         self.server.client_type = "vue3"
         self.state = PageState(self.server)
-        library = Library.of(flow, **{name: options.pop(name, None) for name in FIELD_ARGUMENTS})
+        reading = {name: options.pop(name, None) for name in FIELD_ARGUMENTS}
+        library = Library.of(flow, **reading)
         name, choice = first_choice(library, options)
-        options = {k: v for k, v in options.items() if k not in CHOICE_ARGUMENTS}
+        for argument in CHOICE_ARGUMENTS:
+            options.pop(argument, None)
         field = library.field(name, choice)
         camera = options.pop("camera", None)
         self.area = FlowArea(field, server=self.server, state=self.state, **options)
@@ -147,7 +149,8 @@ class FlowApp:
         """Show the state of a link, and what that omits as on a new page."""
         first_name, first_choice = self._first
         name = str(state.get("file", first_name))
-        choice = Choice(*(str(state.get(key, "")) for key in CHOICE_ARGUMENTS))
+        parts = {key: str(state.get(key, "")) for key in CHOICE_ARGUMENTS}
+        choice = Choice(**parts)
         if name == first_name and choice == Choice():
             choice = first_choice
         self.data.open(name, choice, lambda: self._restore(state))
@@ -249,9 +252,11 @@ def first_choice(library: Library, options: Mapping[str, Any]) -> tuple[str, Cho
     OSError
         Likewise, when the file of the first flow cannot be read.
     """
-    partial_choice = Choice(
-        *("" if (value := options.get(key)) is None else str(value) for key in CHOICE_ARGUMENTS)
-    )
+    chosen = {}
+    for key in CHOICE_ARGUMENTS:
+        if options.get(key) is not None:
+            chosen[key] = str(options[key])
+    partial_choice = Choice(**chosen)
     names = library.names
     errors = list[Exception]()
     for name in names:
@@ -356,7 +361,9 @@ def app_maker(field: Any, folder: str | Path | None, options: dict[str, Any]) ->
         When ``field`` is a function and options or a folder are given as well.
     """
     if callable(field):
-        names = [*options, *(["folder"] if folder is not None else [])]
+        names = list(options)
+        if folder is not None:
+            names.append("folder")
         if names:
             raise FieldError(
                 f"{', '.join(names)} cannot be used with a function; pass them to the application "
@@ -385,8 +392,10 @@ def build_page(app: FlowApp) -> Any:
         "show_state": sharing.show_state,
         "take_link": sharing.take_link,
     }
-    words = {**WORDS, **{name: app.server.trigger_name(call) for name, call in actions.items()}}
-    words["TYPED"] = "true" if app.context.library.typed else "false"
+    words = dict(WORDS)
+    for name, call in actions.items():
+        words[name] = app.server.trigger_name(call)
+    words["TYPED"] = str(app.context.library.typed).lower()
     # All other names are those of values of the page's state.
     page = re.sub(
         r"%(\w+)", lambda m: words.get(m[1], state.key(m[1])), TEMPLATE.read_text("utf-8")

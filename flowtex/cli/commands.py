@@ -81,11 +81,12 @@ def main(arguments: Sequence[str] | None = None) -> int:
     Exception
         With ``--debug`` any error, otherwise only those that are defects of the program.
     """
-    words = list(sys.argv[1:] if arguments is None else arguments)
+    if arguments is None:
+        arguments = sys.argv[1:]
     if isinstance(sys.stdout, io.TextIOWrapper):
         sys.stdout.reconfigure(errors="replace")  # on Windows, files may have a limited encoding
-    debug = "--debug" in words
-    words = [word for word in words if word != "--debug"]
+    debug = "--debug" in arguments
+    words = [word for word in arguments if word != "--debug"]
     try:
         with warnings.catch_warnings(), ended_by_signals():
             _print_warnings()
@@ -140,7 +141,9 @@ def _warn(message: Warning | str, category: type[Warning], *_: Any) -> None:
     if issubclass(category, Notice):
         say((str(message), "dim"))
     elif not category.__module__.startswith("xarray."):  # how a file was written
-        complain(message if isinstance(message, Warning) else UserWarning(message), "yellow")
+        if not isinstance(message, Warning):
+            message = UserWarning(message)
+        complain(message, "yellow")
 
 
 def begin() -> None:

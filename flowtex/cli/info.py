@@ -87,15 +87,20 @@ def _mesh_tables(files: Sequence[Path], block: str | None) -> tuple[str, str, li
 
 
 def _table(*titles: str, right: tuple[str, ...] = ()) -> Table:
+    """Return an empty table with titles, some of them at the right."""
     from rich.table import Table
 
     table = Table(box=None, header_style="dim")
     for title in titles:
-        table.add_column(title, justify="right" if title in right else "left")
+        if title in right:
+            table.add_column(title, justify="right")
+        else:
+            table.add_column(title, justify="left")
     return table
 
 
 def _pairs(rows: Mapping[str, str], title: str = "") -> Table:
+    """Return a table of labels and texts; rows without a text are left out."""
     table = _table("", "")
     table.title = title or None
     table.title_justify = "left"
@@ -113,13 +118,16 @@ def _store_table(place: Path) -> Table:
 
     about = Levels(place).about
     rows, columns = about["nodes"]
+    state = "incomplete; build it again"
+    if about.get("complete"):
+        state = "complete"
     return _pairs(
         {
             "pyramid": f"{columns} × {rows} nodes, {about['depth'] + 1} levels",
             "times": str(len(about["times"])),
             "lines": f"{about['lines']} by {about['parameter']}",
             "scalars": ", ".join(about["scalars"]) or "none",
-            "built": "complete" if about.get("complete") else "incomplete; build it again",
+            "built": state,
         }
     )
 
@@ -135,32 +143,33 @@ def _recognised_table(paths: list[Path]) -> Table:
 
 
 def _file_table(summary: FileSummary) -> Table:
-    size = summary.size.replace(" x ", " × ")
     bounds = summary.bounds
-    times = summary.times
-    if bounds:
-        middle = sum(bounds[2]) / 2
-    else:
-        middle = 0.0
     ends = []
     for axis, (low, high) in zip("xyz", bounds, strict=False):
         ends.append(f"{axis} {low:.4g} to {high:.4g}")
-    listed = ", ".join(f"{time:g}" for time in times)
+    rows = {"grid": summary.grid, "ends": "; ".join(ends)}
+    if summary.size:
+        rows["grid"] += ", " + summary.size.replace(" x ", " × ")
+    if summary.volume:
+        middle = 0.0
+        if bounds:
+            middle = sum(bounds[2]) / 2
+        rows["cut by"] = f"--slice z={middle:.4g}, --contour NAME=VALUE"
+    if summary.blanked:
+        rows["blanked"] = f"{summary.blanked:,} nodes"
+    if summary.blocks:
+        rows["blocks"] = str(len(summary.blocks))
+    if summary.times:
+        rows["times"] = f"{len(summary.times)}: {_span_of(summary.times)}"
+    rows["velocity"] = ", ".join(summary.candidates) or "none found"
+    return _pairs(rows)
+
+
+def _span_of(times: Sequence[float]) -> str:
+    """Return times as text, of many only the first and the last."""
     if len(times) > MOST_TIMES:
-        span = f"{times[0]:g} to {times[-1]:g}"
-    else:
-        span = listed
-    return _pairs(
-        {
-            "grid": f"{summary.grid}{f', {size}' if size else ''}",
-            "ends": "; ".join(ends),
-            "cut by": f"--slice z={middle:.4g}, --contour NAME=VALUE" if summary.volume else "",
-            "blanked": f"{summary.blanked:,} nodes" if summary.blanked else "",
-            "blocks": str(len(summary.blocks) or ""),
-            "times": f"{len(times)}: {span}" if times else "",
-            "velocity": ", ".join(summary.candidates) or "none found",
-        }
-    )
+        return f"{times[0]:g} to {times[-1]:g}"
+    return ", ".join(f"{time:g}" for time in times)
 
 
 def _block_table(summary: FileSummary) -> Table:

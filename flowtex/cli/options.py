@@ -44,6 +44,7 @@ class UsageError(FieldError):
 
 
 def _option_flags(kind: type, group: Group) -> dict[str, Any]:
+    """Return a flag for each field of an option class that can be written as text."""
     flags = {}
     for option in fields(kind):
         if (form := FORMS.get(option.name)) is None:
@@ -54,17 +55,15 @@ def _option_flags(kind: type, group: Group) -> dict[str, Any]:
         else:
             value = of_python
         text = form.words or _in_shell(option.metadata["text"])
-        plain = isinstance(option.default, (str, float)) and "default" not in text
-        flags[option.name] = Annotated[
-            value | None,
-            Parameter(
-                group=group,
-                help=f"{text} [default: {option.default}]" if plain else text,
-                allow_leading_hyphen=value is str,
-                negative=() if form.repeated else None,
-                name=["--sel", "--select"] if option.name == "sel" else None,
-            ),
-        ]
+        if isinstance(option.default, (str, float)) and "default" not in text:
+            text = f"{text} [default: {option.default}]"
+        others: dict[str, Any] = {}
+        if form.repeated:
+            others["negative"] = ()
+        if option.name == "sel":
+            others["name"] = ["--sel", "--select"]
+        parameter = Parameter(group=group, help=text, allow_leading_hyphen=value is str, **others)
+        flags[option.name] = Annotated[value | None, parameter]
     return flags
 
 
@@ -91,6 +90,7 @@ def _setting_flag(row: Setting) -> Any:
 
 
 def _flags(name: str, text: str, flags: dict[str, Any]) -> Any:
+    """Return a class whose fields are flags of the command line."""
     return make_dataclass(
         name,
         [(flag, kind, data_field(default=None)) for flag, kind in flags.items()],
@@ -210,11 +210,17 @@ def arguments(*groups: object) -> dict[str, Any]:
         When the text of a flag cannot be read, as in ``--at 1,x``.
     """
     forms = {**FORMS, "time": Form(read=number_or_text)}
-    forms |= {row.name: Form(read=row.parse) for row in TABLE.values() if row.switch is not None}
-    values = {name: value for group in groups if group for name, value in vars(group).items()}
-    values = {name: value for name, value in values.items() if value not in (None, ())}
-    for name, value in values.items():
-        if name in forms and isinstance(value, (str, tuple)):
+    for row in TABLE.values():
+        if row.switch is not None:
+            forms[row.name] = Form(read=row.parse)
+    values = {}
+    for group in groups:
+        if group:
+            values.update(vars(group))
+    for name, value in list(values.items()):
+        if value in (None, ()):
+            del values[name]
+        elif name in forms and isinstance(value, (str, tuple)):
             try:
                 values[name] = forms[name].read(value)
             except UnreadableError as error:
@@ -237,6 +243,7 @@ def pixels(size: str) -> tuple[int, int]:
         When the text is not two whole numbers from 1 to 16384 with an ``x`` between.
     """
     words = size.lower().replace("×", "x").split("x")
-    if len(words) != 2 or not all(w.isdecimal() and 1 <= int(w) <= 16384 for w in words):
+    is_readable = [word.isdecimal() and 1 <= int(word) <= 16384 for word in words]
+    if len(words) != 2 or not all(is_readable):
         raise UsageError(f"--size is {size!r}; expected width x height up to 16384, as in 1024x768")
     return int(words[0]), int(words[1])

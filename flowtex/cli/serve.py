@@ -234,6 +234,7 @@ def pyramid(
 
 
 def _verify(files: Sequence[Path]) -> int:
+    """Write the faults of a store; return the exit code."""
     from flowtex.pyramid import is_store, verify
     from flowtex.pyramid.places import DamageError
 

@@ -77,15 +77,13 @@ def demo(
     from flowtex.app import Library
     from flowtex.field.formula.make import formula
 
-    names = [example, *(name for name in NAMES if name != example)]
-    shown = {name.replace("_", " "): name for name in names}
-    makers = {title: getattr(examples, f"{name}_field") for title, name in shown.items()}
-    makers |= {name.replace("_", " "): partial(formula, name) for name in KNOWN}
-    library = Library(
-        {title: partial(_source, make) for title, make in makers.items()},
-        looks=FIRST_LOOKS,
-        typed=True,
-    )
+    openers = {}
+    for name in dict.fromkeys((example, *NAMES)):  # the first of them is shown first
+        make = getattr(examples, f"{name}_field")
+        openers[name.replace("_", " ")] = partial(_source, make)
+    for name in KNOWN:
+        openers[name.replace("_", " ")] = partial(_source, partial(formula, name))
+    library = Library(openers, looks=FIRST_LOOKS, typed=True)
     zoom, focus = FIRST_LOOKS.get(example, (1.0, None))
     return serve_library(library, page, {**options, "zoom": zoom, "focus": focus})
 
@@ -133,6 +131,7 @@ def _show_page(
     page: ServeFlags | None,
     options: dict[str, Any],
 ) -> int:
+    """Serve a page of files; return the exit code."""
     if not files:
         raise UsageError("no file is given; name a file or a folder, or try `flowtex demo`")
     for name, group in (("background", "Colours"), ("beside", "View")):
@@ -154,19 +153,19 @@ def _show_page(
             return serve_library(library, page, {**options, **part})
     if is_store or is_one_flow:
         return serve_library(Library.of(load_field(files, choice)), page, options)
-    if misplaced := [name for name in FIELD_OPTIONS if name in choice]:
-        raise UsageError(
-            f"--{misplaced[0].replace('_', '-')} can be used with one file, not with several "
-            "files or a folder"
-        )
+    for name in FIELD_OPTIONS:
+        if name in choice:
+            raise UsageError(
+                f"--{name.replace('_', '-')} can be used with one file, not with several files or "
+                "a folder"
+            )
     return serve_library(Library.of(*files), page, {**options, **choice})
 
 
 def _part_of(library: Library, choice: dict[str, Any]) -> dict[str, Any] | None:
-    """Return the part of a file that options choose, from which the page can go to others.
+    """Return the part of a file that options choose, as values of the controls of the page.
 
-    ``None`` where options choose a flow that the controls of the page do not have, such as that on
-    an oblique plane.
+    Returns ``None`` if no control chooses it, such as a flow on an oblique plane.
     """
     part = dict(choice)
     given = []

@@ -120,10 +120,8 @@ def double_gyre_field(
     """
     points = gyre_nodes(shape)
     if time_varying:
-        times = np.linspace(0.0, PERIOD, 41)
-    else:
-        times = np.zeros(1)
-    return double_gyre_at(times, points, EPSILON if time_varying else 0.0)
+        return double_gyre_at(np.linspace(0.0, PERIOD, 41), points, EPSILON)
+    return double_gyre_at(np.zeros(1), points, 0.0)
 
 
 def double_gyre_at(times: Floats, points: Floats, epsilon: float) -> FlowField:

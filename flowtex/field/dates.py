@@ -74,7 +74,8 @@ def as_seconds(times: Any, time_unit: str) -> tuple[ArrayLike | None, str, Any]:
         first = values.flat[:1]
         if len(first) and not np.isnat(first[0]):
             start = first.astype("datetime64[us]").item(0)
-            start = start if hasattr(start, "isoformat") else None  # a year that datetime lacks
+            if not hasattr(start, "isoformat"):  # a year that datetime lacks
+                start = None
         values = values - first
     seconds = np.ma.masked_array(values / np.timedelta64(1, "s"), np.ma.getmask(times))
     return seconds, "s", start
@@ -189,7 +190,9 @@ def span_since(start: Any, date: Any) -> tuple[float, float]:
     if len(numbers) == 2:
         year, month = numbers
         return begin, since(year + month // 12, month % 12 + 1)
-    return begin, begin + (DAY_S if len(numbers) == 3 else 0)
+    if len(numbers) == 3:
+        return begin, begin + DAY_S
+    return begin, begin
 
 
 #: Names of the ends of a series, and their numbers.

@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from itertools import compress
 from typing import Any, SupportsIndex
 
 import numpy as np
@@ -237,9 +238,9 @@ class FlowField(FieldConstructors, FieldQuantities):
         velocity
             Velocity at the nodes, (J, I, 2 or 3), or (T, J, I, 2 or 3) for a time-varying field, in
             ``velocity_unit``; or complex, u + iv, or with the components first. NaN and masked
-            entries blank a node; one that has data at some times is at rest at the others, without
-            streaks, and the scalar ``"no data"`` is 1 there.
-            Steps that are read lazily (``LazySteps``) stay lazy: at most three tell this.
+            entries blank a node. A node with data at only some times is at rest at the others,
+            without streaks, and the scalar ``"no data"`` is 1 there. Lazy steps (``LazySteps``)
+            stay lazy: at most three are read to find such nodes.
         *components
             Further arrays: ``from_arrays(x, y, u, v)`` takes those of ``plt.streamplot`` and
             ``plt.quiver``, with u and v of the shape (J, I) or (T, J, I). ``from_arrays(u, v)``
@@ -514,9 +515,14 @@ class FlowField(FieldConstructors, FieldQuantities):
     def same_flow(self, **changes: Any) -> FlowField:
         """Return the field with other scalars or texts; positions and velocity stay."""
         flow = replace(self, **changes)
-        kept = (*_SHARED, *_LARGE)
-        flow.__dict__.update({k: v for k, v in self.__dict__.items() if k in kept})
+        self._keep(flow, (*_SHARED, *_LARGE))
         return flow
+
+    def _keep(self, other: FlowField, names: Sequence[str]) -> None:
+        """Give another field the values that are computed already, of some properties."""
+        for name, value in self.__dict__.items():
+            if name in names:
+                other.__dict__[name] = value
 
     def forget(self) -> None:
         """Free derived data, which are computed again when needed."""
@@ -537,13 +543,15 @@ class FlowField(FieldConstructors, FieldQuantities):
             index: Any = list(steps)
         else:
             index = slice(first, last)
-        data = {k: s[index] if len(s) > 1 else s for k, s in self.scalars.items()}
-        parts = {k: s[index] if len(s) > 1 else s for k, s in self.parts.items()}
-        velocity = np.asarray(self.velocity[index])
-        times = self.times[index]
-        part = replace(self, velocity=velocity, times=times, scalars=data, parts=parts)
+        part = replace(
+            self,
+            velocity=np.asarray(self.velocity[index]),
+            times=self.times[index],
+            scalars=_at_steps(self.scalars, index),
+            parts=_at_steps(self.parts, index),
+        )
         part.__dict__["surface"] = self.surface  # equal to what the property would make
-        part.__dict__.update({k: v for k, v in self.__dict__.items() if k in _LARGE})
+        self._keep(part, _LARGE)
         return part
 
     @cached_property
@@ -608,25 +616,41 @@ class FlowField(FieldConstructors, FieldQuantities):
         A periodic axis keeps its first and its last line.
         """
         at = np.ix_(rows, columns)
+        of_steps = (slice(None), *at)
+        has_position = None
+        if self.has_position is not None:
+            has_position = self.has_position[at]
         return replace(
             self,
             points=self.points[at],
-            velocity=self.velocity[:, at[0], at[1]],
+            velocity=self.velocity[of_steps],
             valid=self.valid[at],
-            has_position=None if self.has_position is None else self.has_position[at],
-            scalars={k: s[:, at[0], at[1]] for k, s in self.scalars.items()},
-            parts={k: s[:, at[0], at[1]] for k, s in self.parts.items()},
+            has_position=has_position,
+            scalars={name: steps[of_steps] for name, steps in self.scalars.items()},
+            parts={name: steps[of_steps] for name, steps in self.parts.items()},
             formula=None,  # as its nodes are evenly spaced
         )
 
     def __repr__(self) -> str:
+        facts = [self.size_text]
         if self.steady:
-            steps = "steady"
+            facts.append("steady")
         else:
-            steps = f"{len(self.times)} steps"
-        closed = "".join(a for a, p in zip("ji", self.periodic, strict=True) if p)[::-1]
-        return (
-            f"FlowField({self.name or 'unnamed'}: {self.size_text}, {steps}"
-            f"{f', periodic {closed}' if closed else ''}{', sign-free' if self.sign_free else ''}, "
-            f"{int((~self.valid).sum())} blanked)"
-        )
+            facts.append(f"{len(self.times)} steps")
+        if any(self.periodic):
+            facts.append("periodic " + "".join(compress("ij", self.periodic[::-1])))
+        if self.sign_free:
+            facts.append("sign-free")
+        facts.append(f"{int((~self.valid).sum())} blanked")
+        return f"FlowField({self.name or 'unnamed'}: {', '.join(facts)})"
+
+
+def _at_steps(scalars: Mapping[str, Any], index: Any) -> dict[str, Any]:
+    """Return the values of scalars at some time steps; those without time stay as they are."""
+    chosen = {}
+    for name, steps in scalars.items():
+        if len(steps) > 1:
+            chosen[name] = steps[index]
+        else:
+            chosen[name] = steps
+    return chosen

@@ -11,6 +11,7 @@ of cells thousands of times longer than wide, the nearest middle may be that of 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from itertools import product
 from typing import Any
 
 import numpy as np
@@ -120,10 +121,14 @@ def _places(field: Any, nodes: Indices) -> Floats:
 def lonlats(field: Any, points: Floats) -> Floats:
     """Return longitudes and latitudes of corners of a cell, (K, 2), continuous in it."""
     assert field.projection is not None
-    lon, lat = (np.array(part) for part in field.projection.lonlat(points))
-    poles = np.abs(lat) > POLE_LATITUDE
-    for n in np.flatnonzero(poles) if len(lat) == 4 else ():
-        lon[n] = next((lon[m] for m in (n ^ 2, n ^ 1) if not poles[m]), lon[n])
+    lon, lat = map(np.array, field.projection.lonlat(points))
+    if len(lat) == 4:
+        is_pole = np.abs(lat) > POLE_LATITUDE
+        for n in np.flatnonzero(is_pole):  # it has the longitude of a neighbour
+            for neighbour in (n ^ 2, n ^ 1):
+                if not is_pole[neighbour]:
+                    lon[n] = lon[neighbour]
+                    break
     return np.stack([lon[0] + turned(lon - lon[0]), lat], axis=-1)
 
 
@@ -154,10 +159,13 @@ class Locator:
         self._tree = scipy.spatial.cKDTree(self._points[corners[solid]].mean(axis=1))
         # A periodic axis goes around in space, or is repeated at a period's distance.
         far = np.logical_and(surface.periodic, np.logical_not(surface.closes))
-        turns = [(0.0, -1.0, 1.0) if repeats else (0.0,) for repeats in far]
-        self._shifts = np.stack(
-            [m * surface.offset[0] + n * surface.offset[1] for m in turns[0] for n in turns[1]]
-        )
+        turns = [[0.0], [0.0]]
+        for axis in np.flatnonzero(far):
+            turns[axis] += [-1.0, 1.0]
+        shifts = []
+        for along_j, along_i in product(*turns):
+            shifts.append(along_j * surface.offset[0] + along_i * surface.offset[1])
+        self._shifts = np.stack(shifts)
 
     def nearest(self, points: Floats) -> tuple[Floats, Floats]:
         """Find the points of the drawn surface that are nearest to points (P, 3) in space.

@@ -45,13 +45,17 @@ class NodeSurface:
     @cached_property
     def cells(self) -> Bools:
         """Cells whose nodes are all valid: (J - 1, I - 1), or triangles (M,)."""
-        return np.asarray(np.logical_and.reduce([self.valid[at] for at in self.cell_corners]))
+        return self._at_all_corners(self.valid)
 
     @property
     def placed_cells(self) -> Bools:
         """Cells whose nodes have known positions, in the shape of :attr:`cells`."""
-        placed = [self.has_position[at] for at in self.cell_corners]
-        return np.asarray(np.logical_and.reduce(placed))
+        return self._at_all_corners(self.has_position)
+
+    def _at_all_corners(self, nodes: Bools) -> Bools:
+        """Return the cells at whose corners all of some nodes (J, I) are."""
+        corners = [nodes[at] for at in self.cell_corners]
+        return np.asarray(np.logical_and.reduce(corners))
 
     @cached_property
     def sharp(self) -> Bools:
@@ -144,7 +148,10 @@ def to_index_space(
     """
     p_i, p_j = tangents
     square = np.einsum("djic,djic->ji", tangents, tangents)
-    tiny = COLLAPSED_AREA * float(np.median(square if valid.all() else square[valid]))
+    known = square
+    if not valid.all():
+        known = square[valid]
+    tiny = COLLAPSED_AREA * float(np.median(known))
     u = np.empty((*velocity.shape[:-1], 2))
     speed = np.empty(velocity.shape[:-1])
     squares = np.zeros(2)
@@ -155,17 +162,20 @@ def to_index_space(
     for pole in poles or ():
         _at_pole(pole, velocity, u, speed)
     total, normal = squares
-    return IndexVelocity(
-        components=u,
-        speed=speed,
-        normal_share=float(np.sqrt(min(normal / total, 1.0))) if total > 0 else 0.0,
-    )
+    normal_share = 0.0
+    if total > 0:
+        normal_share = float(np.sqrt(min(normal / total, 1.0)))
+    return IndexVelocity(components=u, speed=speed, normal_share=normal_share)
 
 
 def _project(
     velocity: Floats, p_i: Floats, p_j: Floats, valid: Bools, tiny: float, u: Floats, speed: Floats
 ) -> tuple[float, float]:
-    """Write components and speed of nodes, and return squares of all and of the normal part."""
+    """Write the components of a velocity (T, j, i, 3) along both tangents, and its speed.
+
+    They go into ``u``, (T, j, i, 2) in cells per unit of time, and ``speed``, (T, j, i). Returns
+    the sums of the squares of the velocity, and of its part normal to the surface.
+    """
     g_ii = dot(p_i, p_i)
     g_jj = dot(p_j, p_j)
     g_ij = dot(p_i, p_j)

@@ -119,7 +119,7 @@ class FieldOptions:
     )
 
     def __post_init__(self) -> None:
-        """Join the names of components, and those of a speed and a direction, to ``vectors``."""
+        """Join the names of components, or of a speed and a direction, to ``vectors``."""
         self._join_direction()
         names = [name for name in (self.u, self.v, self.w) if name is not None]
         for argument in ("vectors", *"uvw"):
@@ -132,13 +132,12 @@ class FieldOptions:
         if not names:
             return
         if self.vectors is not None or self.u is None or self.v is None:
-            given = {}
-            for k, n in vars(self).items():
-                if k in ("vectors", *"uvw") and n:
-                    given[k] = n
-            words = ", ".join(f"{name}={value!r}" for name, value in given.items())
+            given = []
+            for argument, name in vars(self).items():
+                if argument in ("vectors", *"uvw") and name:
+                    given.append(f"{argument}={name!r}")
             raise FieldError(
-                f"{words} is given; expected u and v (and w of a mesh), or vectors alone"
+                f"{', '.join(given)} is given; expected u and v (and w of a mesh), or vectors alone"
             )
         object.__setattr__(self, "vectors", ",".join(names))
         for name in "uvw":
@@ -168,8 +167,13 @@ class FieldOptions:
     @classmethod
     def of_dataset(cls, given: Mapping[str, Any]) -> FieldOptions:
         """Return the options of a dataset; other names select along axes."""
-        known = {name: value for name, value in given.items() if name in (*OF_DATASETS, *"uvw")}
-        axes = {name: value for name, value in given.items() if name not in known}
+        known = {}
+        axes = {}
+        for name, value in given.items():
+            if name in (*OF_DATASETS, *"uvw"):
+                known[name] = value
+            else:
+                axes[name] = value
         if axes:
             known["sel"] = {**(known.get("sel") or {}), **axes}
         return cls(**known)
@@ -177,11 +181,12 @@ class FieldOptions:
     @property
     def given(self) -> dict[str, Any]:
         """Values by name of arguments that select data, without those that are ``None``."""
-        return {
-            name: value
-            for name in self.__dataclass_fields__
-            if name != "slices" and (value := getattr(self, name)) is not None
-        }
+        given = {}
+        for name in self.__dataclass_fields__:
+            value = getattr(self, name)
+            if value is not None and name != "slices":
+                given[name] = value
+        return given
 
     def refuse(self, names: Iterable[str], scope: str) -> None:
         """Refuse arguments for another kind of data.
@@ -198,8 +203,9 @@ class FieldOptions:
         FieldError
             When one of them is given.
         """
-        if names := [name for name in self.given if name in names]:
-            raise FieldError(f"{', '.join(names)} applies to {scope}; omit it")
+        refused = [name for name in self.given if name in names]
+        if refused:
+            raise FieldError(f"{', '.join(refused)} applies to {scope}; omit it")
 
 
 def accepts_options(
@@ -212,15 +218,26 @@ def accepts_options(
     """
 
     def complete(function: Function) -> Function:
-        options = [f for kind in kinds for f in fields(kind) if not names or f.name in names]
+        options: list[Field[Any]] = []
+        for kind in kinds:
+            for option in fields(kind):
+                if not names or option.name in names:
+                    options.append(option)
         signature = inspect.signature(function)
-        parameters = [p for p in signature.parameters.values() if p.kind is not p.VAR_KEYWORD]
-        rest = [p for n, p in signature.parameters.items() if n == "selection"]
-        parameters += [
-            inspect.Parameter(f.name, inspect.Parameter.KEYWORD_ONLY, default=f.default)
-            for f in options
-            if f.name not in signature.parameters
-        ]
+        parameters = []
+        rest = []
+        for parameter in signature.parameters.values():
+            if parameter.kind is not parameter.VAR_KEYWORD:
+                parameters.append(parameter)
+            elif parameter.name == "selection":
+                rest = [parameter]
+        for option in options:
+            if option.name not in signature.parameters:
+                parameters.append(
+                    inspect.Parameter(
+                        option.name, inspect.Parameter.KEYWORD_ONLY, default=option.default
+                    )
+                )
         if settings:
             rest = [inspect.Parameter("settings", inspect.Parameter.VAR_KEYWORD, annotation=Any)]
         changed = signature.replace(parameters=[*parameters, *rest])

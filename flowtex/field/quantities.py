@@ -201,6 +201,13 @@ def _scalar_at(
     return float(point.weights @ at_moment(steps, between, point.corners))
 
 
+def _mean_lonlat(weights: Floats, lon: Floats, lat: Floats) -> Floats:
+    """Return the weighted mean of places, longitude and latitude in degrees, (2,)."""
+    if len(weights) == 4:
+        return weights @ np.stack([lon, lat], axis=-1)
+    return np.array(EARTH.lonlat(weights @ EARTH.positions(lon, lat)))
+
+
 def _on_earth(
     field: Any,
     projection: Projection,
@@ -209,15 +216,13 @@ def _on_earth(
     at_time: Callable[[Callable[[Floats], Floats]], Floats],
 ) -> dict[str, Any]:
     """Return place and velocity on the Earth, which do not depend on the map."""
-    corners, weights = point.corners(field.surface.points), point.weights
-    places = lonlats(field, corners)
-    lon, lat = places.T
-    if len(weights) == 4:
-        here = weights @ places
-    else:
-        here = np.array(EARTH.lonlat(weights @ EARTH.positions(lon, lat)))
+    corners = point.corners(field.surface.points)
+    weights = point.weights
+    lon, lat = lonlats(field, corners).T
+    here = _mean_lonlat(weights, lon, lat)
     # Corners at the edge of a map have the directions of the side where the cell is.
-    middle, origin = lon.mean(), projection.origin or projection.center[0]
+    middle = lon.mean()
+    origin = projection.origin or projection.center[0]
     side = origin + turned(middle - origin) + (1 - INWARD) * (lon - middle)
 
     def components(nodal: Floats) -> Floats:
@@ -237,12 +242,14 @@ def _on_earth(
     eastward, northward = mean(at_time(components))
     # On the map, or on the sphere; beyond the edge of a map the surface continues.
     position = projection.positions(here[0], here[1])
-    about, size = values["position"], np.ptp(corners, axis=0).max()
+    about = values["position"]
+    if np.abs(position - about).max() > np.ptp(corners, axis=0).max():
+        position = about
     scalars = {**values["scalars"]}
     if not projection.is_globe:
         scalars.pop("speed", None)  # which is that on the Earth
     return {
-        "position": position if np.abs(position - about).max() <= size else about,
+        "position": position,
         "scalars": scalars,
         "lonlat": (float(turned(here[0])), float(here[1])),
         "eastward": float(eastward),

@@ -55,7 +55,7 @@ class LazySteps:
         return self._count
 
     def __iter__(self) -> Iterator[Floats]:
-        return (self.step(n) for n in range(self._count))
+        return map(self.step, range(self._count))
 
     def step(self, number: int) -> Floats:
         """Return one step, (J, I, ...).
@@ -102,6 +102,7 @@ class LazySteps:
         return step
 
     def __getitem__(self, key: Any) -> Any:
+        """Return a step, some steps that stay lazy, or an array for any other index of NumPy."""
         if isinstance(key, tuple):
             first = key[0]
             rest = key[1:]
@@ -162,7 +163,7 @@ def examined_steps(count: int, size: int) -> list[int]:
     most = max(MOST_EXAMINED // max(size, 1), 3)
     if count <= most:
         return list(range(count))
-    return [round(n) for n in np.linspace(0, count - 1, most).tolist()]
+    return list(map(round, np.linspace(0, count - 1, most).tolist()))
 
 
 def moves(steps: Steps) -> bool:

@@ -128,6 +128,8 @@ def _corner_means(step: Floats) -> Floats:
 def unknown_share(field: Any, step: int) -> Floats:
     """Return the uncertainty of the direction at a step, (J, I) from 0 to 1."""
     steps = field.scalars[field.uncertainty]
-    values = np.asarray(steps[step if len(steps) > 1 else 0], dtype=float)
+    if len(steps) == 1:
+        step = 0
+    values = np.asarray(steps[step], dtype=float)
     share = np.clip(np.nan_to_num(values, nan=1.0, posinf=1.0), 0.0, 1.0)
     return fill_blanked(share, field.valid)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from functools import cache
+from itertools import product
 from typing import Any
 
 from flowtex.errors import FieldError, import_extra
@@ -14,7 +15,7 @@ LENGTHS = ("[length]", "[printing_unit]")  #: Dimensions of lengths in pint; ima
 TIMES = ("[time]", "[frame]")  #: Dimensions of times in pint; images have frames.
 PRESSURES = ("[mass] / [length] / [time] ** 2",)  #: Dimensions of pressures in pint.
 #: Dimensions of velocities in pint.
-VELOCITIES = tuple(f"{length} / {time}" for length in LENGTHS for time in TIMES)
+VELOCITIES = tuple(map(" / ".join, product(LENGTHS, TIMES)))
 #: Spellings that pint reads otherwise, or not at all: its px is a length of web pages, its mb a
 #: unit of area, and its ms a millisecond.
 SPELLINGS = (
@@ -121,12 +122,7 @@ def velocity_units(length: str, time: str, velocity: str) -> tuple[float, str, s
         return 1.0, time, velocity
     given = time
     if length and not time:
-        unit = parsed(velocity)
-        if unit is None:
-            parts = []
-        else:
-            parts = [name for name, _ in (1 * unit).unit_items()]
-        time = next((symbol(name) for name in parts if measures(name, TIMES)), "s")
+        time = _time_of(velocity)
     own = speed_unit(length, time)
     if own:
         scale = factor(velocity, own)
@@ -140,3 +136,14 @@ def velocity_units(length: str, time: str, velocity: str) -> tuple[float, str, s
             "the positions per unit of time; expected a unit of the same kind"
         )
     return scale, time, symbol(velocity)
+
+
+def _time_of(velocity: str) -> str:
+    """Return the symbol of the unit of time in a unit of velocity; of seconds if it has none."""
+    unit = parsed(velocity)
+    if unit is None:
+        return "s"
+    for name, _ in (1 * unit).unit_items():
+        if measures(name, TIMES):
+            return symbol(name)
+    return "s"

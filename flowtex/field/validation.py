@@ -27,7 +27,9 @@ NO_DATA = "no data"  #: The scalar that is 1 where there are no data, 0 elsewher
 
 
 def node_positions(points: Any) -> Any:
-    """Return positions (J, I, 2 or 3) from a tuple of arrays, also (I,) and (J,); else as is.
+    """Return a tuple of coordinates as one array, (J, I, 2 or 3).
+
+    The coordinates are (J, I) each, or x (I,) and y (J,). Other points are returned as they are.
 
     Raises
     ------
@@ -35,11 +37,9 @@ def node_positions(points: Any) -> Any:
         When coordinates of rows or columns both increase and decrease, or the arrays of a tuple
         have different shapes.
     """
-    is_tuple = isinstance(points, (tuple, list)) and len(points) in (2, 3)
-    if is_tuple:
-        sizes = [np.ndim(part) for part in points]
-    else:
-        sizes = []
+    sizes = []
+    if isinstance(points, (tuple, list)) and len(points) in (2, 3):
+        sizes = list(map(np.ndim, points))
     if sizes == [1, 1]:
         for name, line in zip("xy", points, strict=True):
             steps: Floats = np.diff(np.ma.filled(np.ma.asarray(line, dtype=float), np.nan))
@@ -51,7 +51,7 @@ def node_positions(points: Any) -> Any:
         points = np.meshgrid(*points)
     elif not isinstance(points, tuple) or set(sizes) != {2}:
         return points
-    shapes = [np.shape(part) for part in points]
+    shapes = list(map(np.shape, points))
     if len(set(shapes)) > 1:
         raise FieldError(
             f"points are arrays of shapes {', '.join(map(str, shapes))}; expected one shape (J, I)"
@@ -186,11 +186,10 @@ def cell_faults(
 ) -> list[str]:
     """Return faults in the shapes of scalars at cells, and in their names."""
     faults = scalar_faults("cell_scalars", shape, steps, cells, "one value for each cell")
-    twice = []
     for name in cells:
         if name in nodal:
-            twice.append(name)
-    return faults + [f"{n!r} is in scalars and in cell_scalars; expected one" for n in twice]
+            faults.append(f"{name!r} is in scalars and in cell_scalars; expected one")
+    return faults
 
 
 def time_faults(t: Floats | None, count: int) -> list[str]:
@@ -297,7 +296,9 @@ def filled_gaps(
     direction is 1. Its name, empty without gaps, follows the scalars and their units. ``axes`` is
     the number of axes of the nodes. Of a long series of lazy steps some are compared.
     """
-    unchanged = velocity, {} if scalars is None else scalars, units or {}, ""
+    if scalars is None:
+        scalars = {}
+    unchanged = velocity, scalars, units or {}, ""
     if isinstance(velocity, LazySteps):
         numbers = _steps_to_compare(velocity)
         masks: list[Bools] | Bools = [_known(velocity[number]) for number in numbers]
@@ -310,14 +311,15 @@ def filled_gaps(
             masks = _known(velocity)
         else:
             masks = []
-    if len(masks) < 2 or not isinstance(unchanged[1], Mapping):
+    if len(masks) < 2 or not isinstance(scalars, Mapping):
         return unchanged
     sometimes: Bools = np.any(masks, axis=0)
     if np.array_equal(sometimes, np.all(masks, axis=0)):
         return unchanged
-    additions = {NO_DATA: map_steps(velocity, _lacking), "speed": map_steps(velocity, _speed)}
     whole = map_steps(velocity, partial(_filled, sometimes))
-    data = {**unchanged[1], **{k: v for k, v in additions.items() if k not in unchanged[1]}}
+    data = dict(scalars)
+    data.setdefault(NO_DATA, map_steps(velocity, _lacking))
+    data.setdefault("speed", map_steps(velocity, _speed))
     return whole, data, {"speed": unit, **(units or {})}, NO_DATA
 
 

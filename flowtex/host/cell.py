@@ -51,6 +51,7 @@ class Displayed(anywidget.AnyWidget):
         raise NotImplementedError
 
     def _encoded_picture(self) -> tuple[str, str] | None:
+        """Return the type of the still of a widget and its text in base64, if there is one."""
         cell = _cell_number()
         started = time.monotonic()
         picture = self._picture(max(MAX_WAIT_S - _waits_of_cells[cell], 0.0))
@@ -70,7 +71,10 @@ class Displayed(anywidget.AnyWidget):
             return bundle
         data, metadata = bundle
         picture = self._encoded_picture()
-        return {**data, **dict([picture] if picture else [])}, metadata
+        if picture:
+            kind, content = picture
+            data = {**data, kind: content}
+        return data, metadata
 
     def _ipython_display_(self) -> None:
         """Display the widget, unless :func:`flowtex.show` has done so in this very cell."""
@@ -87,6 +91,7 @@ class Displayed(anywidget.AnyWidget):
         return self
 
     def _update_stills(self, *, last: bool = False) -> None:
+        """Replace the stills below cells by present ones."""
         stills: dict[str, Any] = vars(self).get("_stills", {})  # missing if the constructor failed
         for name, shown in stills.items():
             _display_still(shown, name, update=True)
@@ -156,6 +161,7 @@ def _pictures(shown: Any) -> str:
 
 
 def _displayed_in(shown: Any) -> list[Displayed]:
+    """Return the widgets with a flow among a widget and its children."""
     if isinstance(shown, ipywidgets.Box):
         found = []
         for child in shown.children:
@@ -178,6 +184,7 @@ def _display_box(box: Any) -> None:
 
 
 def _shell() -> Any:
+    """Return IPython's shell, ``None`` outside of IPython."""
     ipython = sys.modules.get("IPython")
     if ipython is not None:
         return ipython.get_ipython()

@@ -25,6 +25,8 @@ from pathlib import Path
 from typing import Any
 from urllib.parse import urlsplit
 
+import numpy as np
+
 from flowtex._util import __version__
 from flowtex._util.arguments import checked_target
 from flowtex._util.progress import track
@@ -43,7 +45,7 @@ from flowtex.host.view import (
 )
 from flowtex.pyramid.stored import StoredPyramid
 from flowtex.rendering.webgl.client_data import ClientData
-from flowtex.rendering.webgl.protocol import Header, part_info, part_text, zipped
+from flowtex.rendering.webgl.protocol import Header, Parts, part_info, part_text, zipped
 from flowtex.scene.array_arguments import takes_arrays
 from flowtex.scene.options import Appearance, ViewOptions
 from flowtex.textures.tiles.shared import shared_pyramid
@@ -202,7 +204,7 @@ def write_page(
 ) -> Page:
     """Write a view, or two side by side, as a page.
 
-    ``store`` and ``basemap`` are those of :func:`export`, the options those of :func:`contents_of`.
+    ``store`` and ``basemap`` are as for :func:`export`, the options as for :func:`contents_of`.
     """
     path = checked_target(path)
     if basemap is not None:
@@ -218,12 +220,13 @@ def write_page(
     elif suffix == ".json":
         pieces = scene_pieces
     with whole_file(path) as file:
-        file.writelines(text.encode() for text in pieces(contents))
+        for text in pieces(contents):
+            file.write(text.encode())
     return Page(path, path.stat().st_size, contents.steps)
 
 
 def page_text(views: Sequence[WebView], *, store: str | None = None, **options: Any) -> str:
-    """Return views as the text of a page; the arguments are those of :func:`write_page`."""
+    """Return views as the text of a page; the arguments are as for :func:`write_page`."""
     return "".join(page_pieces(contents_of(views, store, **options)))
 
 
@@ -237,12 +240,25 @@ def _with_tiles(scene: ClientData) -> ClientData:
         room = float(TILE_BYTES)
     else:
         room = float(min(TILE_BYTES, SLICE_BYTES))
-    surface = sum(len(part_text(part)[1]) for part in scene.surface().values())
-    step = sum(len(part_text(part)[1]) for part in scene.step(0).values())
-    root = (surface + scene.steps * step) / math.prod(pyramid.shape(pyramid.depth))
-    while finest and (room := room - root * math.prod(pyramid.shape(finest - 1))) >= 0:
+    size = _text_size(scene.surface()) + scene.steps * _text_size(scene.step(0))
+    size_by_node = size / math.prod(pyramid.shape(pyramid.depth))
+    while finest:
+        room -= size_by_node * math.prod(pyramid.shape(finest - 1))
+        if room < 0:
+            break
         finest -= 1
-    return replace(scene, pyramid=pyramid if finest < pyramid.depth else None, finest=finest)
+    if finest == pyramid.depth:
+        pyramid = None
+    return replace(scene, pyramid=pyramid, finest=finest)
+
+
+def _text_size(parts: Parts) -> int:
+    """Return the number of characters of parts in a page."""
+    size = 0
+    for part in parts.values():
+        _, text = part_text(part)
+        size += len(text)
+    return size
 
 
 @dataclass(frozen=True)
@@ -275,9 +291,9 @@ def contents_of(
 ) -> Contents:
     """Return what a file has of views.
 
-    ``axes`` is that of :class:`~flowtex.scene.options.ViewOptions`. Camera, time and clock are
-    those of :meth:`ClientData.header`; ``picture`` is a PNG or JPEG that is shown until the page
-    has drawn, by default a preview. ``store`` is the address of the store that has the rest.
+    ``axes`` is as for :class:`~flowtex.scene.options.ViewOptions`; camera, time and clock are as
+    for :meth:`ClientData.header`. ``picture`` is a PNG or JPEG that is shown until the page has
+    drawn, by default a preview. ``store`` is the address of the store from which tiles are read.
     """
     if store is None:
         source = ""
@@ -296,7 +312,8 @@ def contents_of(
             scene = linked_data(view, stored)
         header = scene.header(view.scene.settings, time=time, **shown)
         header["name"] = str(title or "") or header["name"]
-        header |= {} if axes is None else {"axes": axes}
+        if axes is not None:
+            header["axes"] = axes
         if stored is not None:
             header["store"] = store_header(stored, scene, store)
         if len(views) > 1:
@@ -321,27 +338,22 @@ def page_pieces(contents: Contents) -> Iterator[str]:
     if ground is None:
         background = "Canvas"
     else:
-        background = f"rgb({' '.join(f'{255 * c:.0f}' for c in ground)})"
+        red, green, blue = np.multiply(255, ground)
+        background = f"rgb({red:.0f} {green:.0f} {blue:.0f})"
+    # Inline styles, and at most a store's server.
+    allowed = "style-src 'unsafe-inline'; "
+    opened = ""
     if source:
+        allowed += f"connect-src {source}; "
         opened = "flowtexStore.open"
-    else:
-        opened = ""
     client = f"\n{client_script(with_store=bool(source))}\nflowtex.openPage({opened});\n"
-    parts = (
-        f'<script type="text/plain" data-view="{n}" data-part="{html.escape(json.dumps(info))}">'
-        f"{text}</script>\n"
-        for n, info, text in contents.parts
-    )
     look = string.Template(asset("page.css").read_text("utf-8")).substitute(background=background)
     yield from _page(
         "page.html",
         contents,
-        parts,
+        map(_part_element, contents.parts),
         client,
-        # Inline styles, and at most a store's server.
-        allowed="style-src 'unsafe-inline'; "
-        + (f"connect-src {source}; " if source else "")
-        + "img-src data: blob:",
+        allowed=allowed + "img-src data: blob:",
         style=look,
         # Browsers recognise JPEG.
         preview="data:image/png;base64," + base64.b64encode(picture).decode(),
@@ -352,29 +364,37 @@ def page_pieces(contents: Contents) -> Iterator[str]:
 def module_pieces(contents: Contents) -> Iterator[str]:
     """Yield the text of a module piece by piece."""
     parts = (json_text(part) + ",\n" for part in contents.parts)
+    store = ""
+    if contents.source:
+        store = ", flowtexStore.open"
     yield from _filled(
         "scene.mjs",
         parts,
         script=client_script(with_store=bool(contents.source)),
         headers=headers_text(contents.headers),
-        store=", flowtexStore.open" if contents.source else "",
+        store=store,
     )
 
 
 def scene_pieces(contents: Contents) -> Iterator[str]:
     """Yield the JSON text of a scene in pieces."""
     yield f'{{"headers": {headers_text(contents.headers)}, "parts": ['
-    for n, packed in enumerate(contents.parts):
-        yield (",\n" if n else "") + json_text(packed)
+    separator = ""
+    for packed in contents.parts:
+        yield separator + json_text(packed)
+        separator = ",\n"
     yield "]}\n"
 
 
 def map_pieces(basemap: str | Mapping[str, object], contents: Contents) -> Iterator[str]:
     """Yield the text of the page of a web map in pieces."""
-    loaded = []
-    for name, digest in MAPLIBRE_DIGESTS.items():
-        loaded.append(f'href="{MAPLIBRE}/{name}" integrity="{digest}" crossorigin="anonymous">')
+    links = []
     kinds = ('preload" as="fetch" data-module=""',) * 2 + ('stylesheet"',)
+    for kind, (name, digest) in zip(kinds, MAPLIBRE_DIGESTS.items(), strict=True):
+        links.append(
+            f'<link rel="{kind} href="{MAPLIBRE}/{name}" integrity="{digest}" '
+            'crossorigin="anonymous">'
+        )
     anywhere = "'self' https: http: data: blob:"  # a style names servers of its own
     yield from _page(
         "map.html",
@@ -385,9 +405,7 @@ def map_pieces(basemap: str | Mapping[str, object], contents: Contents) -> Itera
         scripts=" blob:",
         allowed=f"worker-src data: blob:; style-src 'unsafe-inline' {MAPLIBRE}/; "
         f"connect-src {anywhere}; img-src {anywhere}",
-        links="\n".join(
-            f'<link rel="{kind} {rest}' for kind, rest in zip(kinds, loaded, strict=True)
-        ),
+        links="\n".join(links),
         layer=_inline(asset("maplibre.js").read_text("utf-8")),
         basemap=json_text(basemap),
     )
@@ -419,6 +437,7 @@ def _inline(script: str) -> str:
 
 
 def _filled(name: str, parts: Iterator[str], **values: str) -> Iterator[str]:
+    """Yield a template with values in place of its names, and parts in the middle."""
     before, after = re.split(r"\$(?:parts|scene)\n", asset(name).read_text("utf-8"))
     yield string.Template(before).substitute(values)
     yield from parts
@@ -428,7 +447,21 @@ def _filled(name: str, parts: Iterator[str], **values: str) -> Iterator[str]:
 def headers_text(headers: Sequence[Header]) -> str:
     """Return headers as JSON, and of the second what differs from the first."""
     first, *others = headers
-    return json_text([first, *({n: v for n, v in h.items() if v != first[n]} for h in others)])
+    written = [first]
+    for header in others:
+        differing = {}
+        for name, value in header.items():
+            if value != first[name]:
+                differing[name] = value
+        written.append(differing)
+    return json_text(written)
+
+
+def _part_element(part: tuple[int, Header, str]) -> str:
+    """Return the element of a page that contains a part of :func:`_packed`."""
+    number, info, text = part
+    attributes = f'data-view="{number}" data-part="{html.escape(json.dumps(info))}"'
+    return f'<script type="text/plain" {attributes}>{text}</script>\n'
 
 
 def json_text(value: object) -> str:
@@ -444,13 +477,16 @@ def _packed(
     written: dict[str, Header] = {}
     for n, scene in enumerate(scenes):
         names: set[str] = set()
-        if is_linked:
-            parts = iter([first_parts(scene, scene.first_time if time is None else time)])
-        else:
+        parts: Iterator[Parts]
+        if not is_linked:
             steps = track(range(scene.steps), scene.steps, "Packing time steps")
             tiles = TileSource(scene, budget=0).tiles()
             parts = chain([scene.surface()], map(scene.step, steps), tiles)
-        for name, array in chain.from_iterable(part.items() for part in parts):
+        elif time is None:
+            parts = iter([first_parts(scene, scene.first_time)])
+        else:
+            parts = iter([first_parts(scene, time)])
+        for name, array in chain.from_iterable(map(dict.items, parts)):
             if name in names:  # values of all times are parts of each step
                 continue
             names.add(name)
@@ -492,7 +528,9 @@ def source_of(store: str) -> str:
         else:
             hint = ""
         raise FieldError(f"store is {store!r}; {EXPECTED}{hint}")
-    return f"{parts.scheme}://{host}" + (f":{port}" if port else "")
+    if port:
+        return f"{parts.scheme}://{host}:{port}"
+    return f"{parts.scheme}://{host}"
 
 
 def linked_data(view: WebView, stored: StoredPyramid) -> ClientData:
@@ -500,18 +538,23 @@ def linked_data(view: WebView, stored: StoredPyramid) -> ClientData:
     data = view.page_data()
     if not stored.about.get("complete"):
         notify("the store is incomplete; missing tiles are shown coarse", UserWarning)
-    return replace(
-        data, pyramid=stored if stored.depth else None, traces=data.textures.store.streamlines
-    )
+    traces = data.textures.store.streamlines
+    if not stored.depth:
+        return replace(data, pyramid=None, traces=traces)
+    return replace(data, pyramid=stored, traces=traces)
 
 
 def store_header(stored: StoredPyramid, scene: ClientData, address: str | None) -> Header:
     """Return the part of the header about the store."""
+    about = stored.about
     return {
         "url": address,
-        **{name: stored.about[name] for name in ("format", "fingerprint", "parameter", "lines")},
+        "format": about["format"],
+        "fingerprint": about["fingerprint"],
+        "parameter": about["parameter"],
+        "lines": about["lines"],
         "depth": stored.depth,
-        "derivesSpeed": "speed" not in stored.about["scalars"],
+        "derivesSpeed": "speed" not in about["scalars"],
         "steps": [scene.source(step) for step in range(scene.steps)],
     }
 

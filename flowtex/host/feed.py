@@ -1,8 +1,8 @@
 """Feed of arrays to the client of a widget: coarse ones first, then all, then those it requests.
 
 Threads do the long work. Some send parts of the current scene, which its source makes. Another
-makes the next scene, the whole one after a coarse one or that of new settings, and replaces the
-current one when the new one can be shown.
+thread makes the next scene, such as the whole one after a coarse one, or the scene of new settings,
+and replaces the current scene when the next one can be shown.
 """
 
 from __future__ import annotations
@@ -144,6 +144,7 @@ class Feed:
         self._requests.discard(request)
 
     def _answer(self, scene: ClientData, request: str, future: Future[Parts]) -> None:
+        """Send the parts that a client requested, or why there are none."""
         self._requests.discard(request)
         error = future.exception()
         if isinstance(error, Stopped) or self._closed:
@@ -171,6 +172,7 @@ class Feed:
                 self.ready()
 
     def _scene_changed(self, affects: Change) -> None:
+        """Send to the client what a change of the scene affects."""
         if affects == "uniform":
             return
         self.still = None
@@ -183,8 +185,12 @@ class Feed:
             self.settled.clear()
 
         def change() -> None:
-            if order == self._order:
-                self._replace(self._first() if affects == "trace" else self.view.data(), order)
+            if order != self._order:
+                return
+            if affects == "trace":
+                self._replace(self._first(), order)
+            else:
+                self._replace(self.view.data(), order)
 
         self._build(change, partial(self._complete, order))
 
@@ -196,15 +202,19 @@ class Feed:
         self.settled.set()
 
     def _first(self) -> ClientData:
+        """Return the data that a client gets first, coarse ones of a large field."""
         field = self.view.field
         nodes = math.prod(self.view.shape)
         # The coarse form of triangles is the root of their tiles, which is sent first in any case.
         is_whole = self.view.scene.pyramid is None
         if field.triangles is not None or (is_whole and nodes * len(field.times) <= LARGE_NODES):
             return self.view.data()
-        return self.view.coarse_data(COARSE_STEADY if field.steady else COARSE_VARYING)
+        if field.steady:
+            return self.view.coarse_data(COARSE_STEADY)
+        return self.view.coarse_data(COARSE_VARYING)
 
     def _complete(self, order: int) -> None:
+        """Send the full data where the client has coarse ones."""
         shape = self.source.scene.textures.geometry.shape
         if order == self._order and shape != self.view.shape:
             self._replace(self.view.data(), order)
@@ -235,6 +245,7 @@ class Feed:
                 self._send({"kind": "error", "text": _words(error)}, [])
 
     def _replace(self, scene: ClientData, order: int) -> None:
+        """Replace the scene that is sent, unless a later change has begun."""
         parts = first_parts(scene, self._moment())
         with self._lock:
             if order != self._order or self._closed:
@@ -245,14 +256,16 @@ class Feed:
             self.source = TileSource(scene)
             self._surface = [name for name in parts if "/" not in name]
             # The client removes all other parts.
-            kept = [name for name in self._sent if "/" in name or name in parts]
-            self._sent = {name: self._sent[name] for name in kept}
+            for name in list(self._sent):
+                if "/" not in name and name not in parts:
+                    del self._sent[name]
             self._announce(self.header)
             if self._live:
                 self._expect(scene)
                 self._deliver(parts, again=False)
 
     def _recolour(self) -> None:
+        """Send the colours of the scene, which keeps its flow."""
         scene = self.view.recoloured(self.source.scene)
         parts = first_parts(scene, self._moment())
         with self._lock:
@@ -269,6 +282,7 @@ class Feed:
                 self._deliver(colours, again=False)
 
     def _send_first(self) -> None:
+        """Send the parts of the present scene with which a client begins."""
         while True:
             scene = self.source.scene
             parts = first_parts(scene, self._moment())
@@ -281,18 +295,22 @@ class Feed:
     def _deliver(self, parts: Parts, *, again: bool) -> None:
         """Send arrays, the flow after its surface; those that a client has only when ``again``."""
         batch: list[tuple[Header, AnyArray]] = []
+        size = 0
         for name, array in sorted(parts.items(), key=lambda item: ("/" in item[0], item[1].nbytes)):
             info = part_info(name, array)
             if not again and "/" not in name and self._sent.get(name) == info["digest"]:
                 continue
             self._sent[name] = info["digest"]
-            if batch and sum(a.nbytes for _, a in batch) + array.nbytes > MESSAGE_BYTES:
+            if batch and size + array.nbytes > MESSAGE_BYTES:
                 self._post(batch)
                 batch = []
+                size = 0
             batch.append((info, array))
+            size += array.nbytes
         self._post(batch)
 
     def _post(self, parts: Sequence[tuple[Header, AnyArray]]) -> None:
+        """Send arrays in one message."""
         if self._closed or not parts:
             return
         infos = [info for info, _ in parts]

@@ -11,7 +11,7 @@ import asyncio
 import io
 import sys
 import uuid
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import wait
 from contextlib import suppress
 from contextvars import copy_context
@@ -80,8 +80,12 @@ class CheckedTrait(traitlets.TraitType[Any, Any]):
 
 
 def _camera(present: CameraValues | None, value: Any) -> CameraValues:
+    """Return a camera as a dictionary; values that are not given stay."""
     if not isinstance(value, Camera):
-        value = Camera.from_dict(value, Camera(**present) if present else None)
+        base = None
+        if present:
+            base = Camera(**present)
+        value = Camera.from_dict(value, base)
     values: CameraValues = value.to_dict()
     return values
 
@@ -89,7 +93,7 @@ def _camera(present: CameraValues | None, value: Any) -> CameraValues:
 def _size(_: Any, value: Any) -> list[int]:
     """Return width and height in pixels of the page; a width of 0 fills the cell."""
     try:
-        width, height = (int(n) for n in value)
+        width, height = map(int, value)
     except (TypeError, ValueError):
         width = -1
         height = 0
@@ -263,23 +267,11 @@ class FlowWidget(AppearanceAttributes, SettingTraits, Displayed):
         self._still: bytes | None = None
         self._fit = arguments.view.first_camera
         self._ends: list[Callable[[], None]] = []
-        host = Host()
-
-        def feed(number: int, view: WebView) -> Feed:
-            return Feed(
-                view,
-                moment=lambda: views[0].scene.time,
-                announce=lambda header: host.call(self._announce, number, header),
-                send=lambda content, buffers: host.call(
-                    self.send, {**content, "view": number}, buffers
-                ),
-            )
-
         #: One view or two, from left to right. The second has the settings of the first except its
         #: own, and the browser links their cameras.
-        self._feeds = [feed(n, view) for n, view in enumerate(views)]
+        self._feeds = self._made_feeds(views)
         for view in views[1:]:
-            follow(lambda: self.scene, lambda view=view: view.scene, view.own)  # type: ignore[misc]
+            self._link(view)
         first = self._fit(views[0].field.surface, PREVIEW[0] / PREVIEW[1])
         super().__init__(
             _key=uuid.uuid4().hex,
@@ -290,16 +282,39 @@ class FlowWidget(AppearanceAttributes, SettingTraits, Displayed):
             axes=arguments.view.axes,
             **dict(self.settings),
         )
+        self._reading = arguments.field
+        self._start()
+        self._is_made = True
+
+    def _made_feeds(self, views: Sequence[WebView]) -> list[Feed]:
+        """Return what sends each view to the browser; all show the time of the first."""
+        host = Host()
+
+        def feed(number: int, view: WebView) -> Feed:
+            def announce(header: Header) -> None:
+                host.call(self._announce, number, header)
+
+            def send(content: dict[str, Any], buffers: Any) -> None:
+                host.call(self.send, {**content, "view": number}, buffers)
+
+            return Feed(view, moment=lambda: views[0].scene.time, announce=announce, send=send)
+
+        return [feed(number, view) for number, view in enumerate(views)]
+
+    def _link(self, view: WebView) -> None:
+        """Let a second view follow the settings of the first, except its own."""
+        follow(lambda: self.scene, lambda: view.scene, view.own)
+
+    def _start(self) -> None:
+        """Send the first headers, and connect the traits with the scene."""
         for number, each in enumerate(self._feeds):
             self._announce(number, each.header)
-        self._reading = arguments.field
         self.on_msg(self._handle_message)
         self.observe(lambda c: setattr(self.settings, c["name"], c["new"]), list(TABLE))
         self.observe(self._to_time, "time")
         self._ends = [self.settings.observe(self._set), self.scene.observe(self._scene_changed)]
         for each in self._feeds:
             each.start()
-        self._is_made = True
 
     @property
     def scene(self) -> Scene:
@@ -338,7 +353,8 @@ class FlowWidget(AppearanceAttributes, SettingTraits, Displayed):
     def set_image(self, image: Any) -> None:
         """Advect another image, given as for the argument ``image``."""
         views = self._views
-        lay_image([view.scene for view in views], load_image(image), views[-1].own)
+        scenes = [view.scene for view in views]
+        lay_image(scenes, load_image(image), views[-1].own)
 
     def set_still(self, picture: Bytes) -> None:
         """Show a picture, (H, W, 3) uint8, where no browser draws, until the scene changes."""
@@ -397,6 +413,7 @@ class FlowWidget(AppearanceAttributes, SettingTraits, Displayed):
 
     @traitlets.validate("point")
     def _check_point(self, proposal: Any) -> Any:
+        """Complete a point by its place in index space."""
         point = proposal["value"]
         field = self.field
         if point is None or field.triangles is None:
@@ -405,7 +422,9 @@ class FlowWidget(AppearanceAttributes, SettingTraits, Displayed):
             index = locate(field, point.get("position"), tolerance=np.inf)
         except FieldError as error:
             raise TraitValueError(str(error)) from error
-        return {**point, "index": None if index is None else index[::-1]}
+        if index is not None:
+            index = index[::-1]
+        return {**point, "index": index}
 
     def set_state(self, sync_data: dict[str, Any]) -> None:
         """Set the values sent by the browser; invalid ones are reset there."""
@@ -417,13 +436,13 @@ class FlowWidget(AppearanceAttributes, SettingTraits, Displayed):
                     self.send_state(name)
 
     def _announce(self, number: int, header: Header) -> None:
+        """Send the header of a view to the browser."""
         if len(self._feeds) > 1:
             own = self._views[1].own_settings
             settings = self._views[number].scene.settings
+            values = {}
             if number:
                 values = {name: getattr(settings, name) for name in own}
-            else:
-                values = {}
             header = {**header, "differs": list(own), "own": values}
         # Not while the browser's values are being set, which would delay it until after the arrays
         # that belong to it.
@@ -469,6 +488,7 @@ class FlowWidget(AppearanceAttributes, SettingTraits, Displayed):
                 self._load(feed, request, message)
 
     def _load(self, feed: Feed, request: str, message: Header) -> None:
+        """Send the parts of a tile or a mark that the browser requests, if they can exist."""
         key = message.get("key")
         steps = message.get("steps")
         mark = message.get("mark", "")
@@ -480,19 +500,20 @@ class FlowWidget(AppearanceAttributes, SettingTraits, Displayed):
             feed.load(request, TileKey(*key), steps)
 
     def _framed(self, frame: bytes, message: Header) -> bytes:
+        """Return a still of a frame of the browser, with axes and annotations."""
         image = Image.open(io.BytesIO(frame)).convert("RGB")
         count = len(self._feeds)
-        (width, height) = (int(side) for side in message["size"])
+        (width, height) = map(int, message["size"])
         size = (min(width, MOST_SIDE) // count, min(height, MOST_SIDE))
         wide = image.width // count
         ground = rgb(message["ground"])
-        parts = [image.crop((n * wide, 0, (n + 1) * wide, image.height)) for n in range(count)]
-        return _side_by_side(
-            still_png(
-                feed.view, size, data=feed.source.scene, flow=part, ground=ground, **self._look()
-            )
-            for feed, part in zip(self._feeds, parts, strict=True)
-        )
+        look = self._look()
+        stills = []
+        for n, feed in enumerate(self._feeds):
+            part = image.crop((n * wide, 0, (n + 1) * wide, image.height))
+            data = feed.source.scene
+            stills.append(still_png(feed.view, size, data=data, flow=part, ground=ground, **look))
+        return _side_by_side(stills)
 
     def _picture(self, timeout_s: float) -> bytes | None:
         """Return a still of the browser's last frame, or one that NumPy draws."""
@@ -501,26 +522,39 @@ class FlowWidget(AppearanceAttributes, SettingTraits, Displayed):
         width = self.size[0] or USUAL_WIDTH
         height = self.size[1]
         count = len(self._feeds)
-        for feed in self._feeds if timeout_s > 0 else ():
-            feed.draw((width // count, height // count), **self._look())  # in the same shape
+        if timeout_s > 0:
+            for feed in self._feeds:
+                feed.draw((width // count, height // count), **self._look())  # in the same shape
         stills = [feed.still for feed in self._feeds if feed.still is not None]
         done, _ = wait(stills, max(timeout_s, 0))
-        if len(done) < count or any(still.exception() for still in done):
+        if len(done) < count:
             return None
-        return _side_by_side(still.result() for still in stills)
+        pictures = []
+        for still in stills:
+            if still.exception():
+                return None
+            pictures.append(still.result())
+        return _side_by_side(pictures)
 
     def _look(self) -> Any:
         """Return arguments of stills: a camera that was not moved fits the shape of the picture."""
         surface = self.field.surface
         camera = Camera.from_dict(dict(self.camera))
         is_moved = camera != self._fit(surface, PREVIEW[0] / PREVIEW[1])
+
+        def fitted(aspect: float) -> Camera:
+            if is_moved:
+                return camera
+            return self._fit(surface, aspect)
+
         return {
-            "camera": lambda aspect: camera if is_moved else self._fit(surface, aspect),
+            "camera": fitted,
             "axes": self.axes,
             "differs": self._views[-1].own_settings,
         }
 
     def _to_time(self, change: Any) -> None:
+        """Show the time of the trait."""
         if change["new"] != self.scene.time:
             self.scene.time = change["new"]
         if self.point is not None and self.field.formula is None:  # whose parameters browsers know
@@ -534,8 +568,11 @@ class FlowWidget(AppearanceAttributes, SettingTraits, Displayed):
         i, j = index
         found = values_at(self.field, (j, i), self.scene.time)
         present = {SPEED: found.speed, **found.scalars}
-        names = [name for name in point.get("values", {}) if name in present]
-        return {**point, "values": {name: float(present[name]) for name in names}}
+        values = {}
+        for name in point.get("values", {}):
+            if name in present:
+                values[name] = float(present[name])
+        return {**point, "values": values}
 
     def _set(self, name: str, value: Any) -> None:
         if getattr(self, name) != value:
@@ -560,10 +597,13 @@ def _are_whole(values: Any) -> TypeGuard[list[int]]:
 
 
 def _side_by_side(pictures: Iterable[bytes]) -> bytes:
+    """Return pictures as one PNG, from left to right."""
     first, *others = pictures
     if not others:
         return first
-    columns = [np.asarray(Image.open(io.BytesIO(png)).convert("RGB")) for png in (first, *others)]
+    columns = []
+    for png in (first, *others):
+        columns.append(np.asarray(Image.open(io.BytesIO(png)).convert("RGB")))
     file = io.BytesIO()
     Image.fromarray(np.hstack(columns)).save(file, "PNG")
     return file.getvalue()

@@ -64,7 +64,8 @@ def show(mesh: Any, *, size: tuple[int, int] | None = None, **options: Any) -> F
     if in_notebook():
         from flowtex.host.flow_widget import FlowWidget
 
-        options |= {} if size is None else {"size": size}
+        if size is not None:
+            options["size"] = size
         return FlowWidget(mesh, **options).show()
     from flowtex.rendering.diagnostics import has_display, prefer_headless, require_opengl
 
@@ -91,6 +92,7 @@ def in_notebook() -> bool:
 
 
 def _show_window(mesh: Any, size: tuple[int, int], options: dict[str, Any]) -> None:
+    """Open a window with a flow, until it is closed."""
     from flowtex.plotting.component import open_plotter
     from flowtex.scene.scene import make_scenes
 
@@ -103,6 +105,7 @@ def _show_window(mesh: Any, size: tuple[int, int], options: dict[str, Any]) -> N
 
 
 def _show_page(mesh: Any, size: tuple[int, int] | None, options: dict[str, Any]) -> None:
+    """Serve a page with a flow, until it ends."""
     for name, value in (("size", size), ("beside", options.pop("beside", None))):
         if value is not None:
             raise FieldError(
@@ -112,7 +115,9 @@ def _show_page(mesh: Any, size: tuple[int, int] | None, options: dict[str, Any])
     field = read_field(mesh, Options.split(**options).field)
     from flowtex.app import serve
 
-    serve(field, **{k: v for k, v in options.items() if k not in FieldOptions.__dataclass_fields__})
+    for name in FieldOptions.__dataclass_fields__:
+        options.pop(name, None)
+    serve(field, **options)
 
 
 def show_plotter(plotter: Any, *, screenshot: Any = None, **options: Any) -> Any:
@@ -154,6 +159,7 @@ def _show_as_pyvista(plotter: Any, screenshot: Any, options: dict[str, Any]) -> 
 
 
 def _show_widget(plotter: Any, screenshot: Any, options: dict[str, Any]) -> FlowWidget:
+    """Return the widget of a plotter, with a still where the kernel can draw one."""
     from flowtex.rendering.diagnostics import OpenGLMissingError, begin_trial, require_opengl
 
     if screenshot:

@@ -43,6 +43,7 @@ from flowtex.rendering.webgl.marks import (
     strokes,
 )
 from flowtex.scene.annotations import annotate, difference_text, layout, write_ticks
+from flowtex.scene.scene import Scene
 from flowtex.settings import Settings
 
 #: Returns the camera for a ratio of width to height.
@@ -114,15 +115,19 @@ def still_png(
     look["label"] = difference_text(scene, dict.fromkeys(differs))
     look["scale_bar"] = frame is None and axes != "none"
     room = layout(scene, size, seen, **look)
-    left, right, row = (0, 0, 0) if frame is None else TICK_ROOM
-    across = width - left - right
-    down = height - room.above - room.below - row
+    across = width
+    down = height - room.above - room.below
+    left = 0
+    if frame is not None:
+        left, right, row = TICK_ROOM
+        across -= left + right
+        down -= row
     box = (max(across, 1), max(down, 1))
     if flow is None:
         seen = camera(box[0] / box[1])
         flow = _drawn(view, data, box, seen)
     flow.thumbnail(box)
-    picture = Image.new("RGB", size, tuple(round(255 * c) for c in ground))
+    picture = Image.new("RGB", size, _bytes(ground))
     picture.paste(flow, (left, room.above))
     if frame is not None:
         half = np.array([seen.height * flow.width / flow.height, seen.height])
@@ -131,15 +136,27 @@ def still_png(
         write_ticks(picture, corners, (middle - half, middle + half), ground)
     canvas = np.array(picture)
     annotate(canvas, scene, seen, flow_height=flow.height, **look)
-    colors = {*LINE_COLORS.values(), *NULLCLINE_COLORS.values(), RIM_COLOR, "black", "white"}
-    colors |= {mark.color for mark in KIND_MARKS.values()}
-    exact = [round(255 * c) for color in sorted(colors) for c in rgb(color)]
-    return encoded(
-        Image.fromarray(canvas), [*exact, *scene.legend_colours[::4, :3].ravel().tolist()]
-    )
+    return encoded(Image.fromarray(canvas), _exact_colours(scene))
+
+
+def _exact_colours(scene: Scene) -> list[int]:
+    """Return the red, green and blue of lines, marks and the legend, one after the other."""
+    names = {*LINE_COLORS.values(), *NULLCLINE_COLORS.values(), RIM_COLOR, "black", "white"}
+    for mark in KIND_MARKS.values():
+        names.add(mark.color)
+    exact: list[int] = []
+    for name in sorted(names):
+        exact += _bytes(rgb(name))
+    return exact + scene.legend_colours[::4, :3].ravel().tolist()
+
+
+def _bytes(fractions: Sequence[float]) -> tuple[int, ...]:
+    """Return the parts of a colour as numbers from 0 to 255."""
+    return tuple(round(255 * fraction) for fraction in fractions)
 
 
 def _drawn(view: WebView, data: ClientData, size: tuple[int, int], camera: Camera) -> Image.Image:
+    """Return the flow of a view with arrows, critical points and lines."""
     scene = view.scene
     coarser = max(COARSER, math.ceil(math.sqrt(size[0] * size[1] / MOST_PIXELS)))
     image, picture = draw_flow(view, data, size, camera, scene.time, coarser)
@@ -169,7 +186,7 @@ def _draw_arrow(draw: ImageDraw.ImageDraw, path: AnyArray, length: float) -> Non
     back *= HEAD * length / max(float(np.hypot(*back)), 1e-9)
     side = HEAD_WIDTH / HEAD * np.array([-back[1], back[0]])
     head = [tuple(tip), tuple(tip - back + side), tuple(tip - back - side)]
-    shaft = [tuple(p) for p in path[: -ARROW_STEPS // 2]]
+    shaft = list(map(tuple, path[: -ARROW_STEPS // 2]))
     for more, ink in ((HALO_PX, "white"), (0, "black")):
         draw.line(shaft, ink, SHAFT_PX + more, joint="curve")
         draw.line([*head, head[0]], ink, more or 1, joint="curve")
@@ -188,7 +205,10 @@ def _arrow_paths(
     scale = np.array(picture.covered.shape[::-1]) / size
 
     def at(values: AnyArray, places: Floats) -> Floats:
+        """Return values (H, W) or (H, W, C) of the picture at places (N, 2)."""
         index = (places * scale - 0.5).T[::-1]
+        if values.ndim == 3:
+            return np.stack([at(component, places) for component in np.moveaxis(values, -1, 0)], -1)
         return scipy.ndimage.map_coordinates(values, index, order=1, mode="nearest")
 
     covered = picture.covered.astype(float)
@@ -196,7 +216,7 @@ def _arrow_paths(
     inside = ((start >= 0) & (start < size)).all(axis=-1) & (at(covered, start) > INSIDE)
     start = start[inside]
     points = points[inside]
-    shown = np.stack([at(np.nan_to_num(pixels[..., n]), start) for n in range(3)], axis=-1)
+    shown = at(np.nan_to_num(pixels), start)
     start = start[np.linalg.norm(shown - points, axis=-1) < HIDDEN * camera.height]
     step = ARROW_LENGTH * apart / (2 * ARROW_STEPS)
     tracks: list[list[Floats]] = []
@@ -204,7 +224,7 @@ def _arrow_paths(
         place = start
         track = []
         for _ in range(ARROW_STEPS):
-            moved = np.stack([at(way[..., n], place) for n in (0, 1)], axis=-1)
+            moved = at(way, place)
             goes_on = at(covered, place + sign * step * moved) > INSIDE  # else the flow ends
             place = place + sign * step * moved * goes_on[:, None]
             track.append(place)
@@ -218,7 +238,8 @@ def _arrow_points(
     """Return the positions of arrows (N, 3), as far apart as the camera needs them."""
     geometry = data.textures.geometry
     matrix = camera.matrix(size[0] / size[1])
-    sides = np.stack([matrix[3] + sign * matrix[row] for row in (0, 1) for sign in (1, -1)])
+    right, up, _, depth = matrix
+    sides = np.stack([depth + right, depth - right, depth + up, depth - up])
     if camera.parallel:
         eye = None
         half = camera.height
@@ -274,9 +295,9 @@ def draw_flow(
     coarser: int,
 ) -> tuple[Image.Image, Picture]:
     """Return a picture of the flow and the lines of its map, and the smaller one it is made of."""
-    before, after, between = steps_around(
-        scene.times, float(scene.first_time if time is None else time)
-    )
+    if time is None:
+        time = scene.first_time
+    before, after, between = steps_around(scene.times, float(time))
     steps = (scene.source(before), scene.source(after))
     picture = render(
         scene.textures,
@@ -310,12 +331,15 @@ def encoded(image: Image.Image, exact: Iterable[int] = (), *, is_page: bool = Fa
     palette[corner : corner + 3] = picture[0, 0].tolist()  # the exact background
     reduced.putpalette(palette)
     file = io.BytesIO()
-    is_page &= bool((picture[0, 0] == 255).all())
-    reduced.save(file, "PNG", optimize=True, **({"transparency": corner // 3} if is_page else {}))
+    options = {}
+    if is_page and (picture[0, 0] == 255).all():
+        options["transparency"] = corner // 3
+    reduced.save(file, "PNG", optimize=True, **options)
     return file.getvalue()
 
 
 def _few_samples(settings: Settings) -> Settings:
+    """Return settings with fewer samples of a streak, which NumPy draws sooner."""
     settings = settings.copy()
     samples = min(settings.samples, SAMPLES)
     # Streaks keep their length as far as possible.
@@ -345,10 +369,10 @@ def _draw_lines(picture: Image.Image, scene: ClientData, camera: Camera) -> None
             pixels[far] = np.nan
         seen: Bools = np.isfinite(pixels[..., 0])
         stroke = STROKES[option]
-        colour = tuple(round(255 * c) for c in (*rgb(stroke.color), stroke.opacity))
+        colour = _bytes((*rgb(stroke.color), stroke.opacity))
         for begin, end in pairwise(lines.starts):
             for run in np.split(np.arange(begin, end), 1 + np.flatnonzero(~seen[begin:end])):
-                draw.line([tuple(p) for p in pixels[run][seen[run]]], fill=colour)
+                draw.line(list(map(tuple, pixels[run][seen[run]])), fill=colour)
 
 
 def pixels_of(points: Floats, camera: Camera, size: ArrayLike) -> Floats:
@@ -358,6 +382,7 @@ def pixels_of(points: Floats, camera: Camera, size: ArrayLike) -> Floats:
 
 
 def _colour(scene: ClientData, picture: Picture, steps: tuple[int, int], between: float) -> Floats:
+    """Return the colours of the pixels at a time, (H, W, 3), or one for all."""
     colours = scene.colours
     if colours.values is None or not len(colours.scale.table):
         return np.asarray(colours.plain)

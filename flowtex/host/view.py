@@ -104,34 +104,38 @@ class WebView:
         """Return the same with the values of all scalars, for pages without a server."""
         data = self.data()
         names = self.scene.scalar_names
-        others = tuple(
-            (n, self.scene.scalar_steps(name, data.field))
-            for n, name in enumerate(names)
-            if name != self.scene.scalar_name
-        )
-        colours = replace(data.colours, others=others)
+        others = []
+        for n, name in enumerate(names):
+            if name != self.scene.scalar_name:
+                others.append((n, self.scene.scalar_steps(name, data.field)))
+        colours = replace(data.colours, others=tuple(others))
         settings = self.scene.settings
         # A client finds the structure of a formula itself.
         is_whole = data.formula is not None
-        drawn = [part for name, part in MARK_PARTS.items() if is_whole or getattr(settings, name)]
         kinds = []
-        for kind in drawn:
-            if data.marks and kind in data.marks.kinds:
+        for name, kind in MARK_PARTS.items():
+            is_drawn = is_whole or getattr(settings, name)
+            if is_drawn and data.marks and kind in data.marks.kinds:
                 kinds.append(kind)
-        marks = data.marks and replace(data.marks, kinds=tuple(kinds), carried=True)
-        return replace(data.recoloured(colours), marks=marks if kinds else None)
+        marks = None
+        if data.marks and kinds:
+            marks = replace(data.marks, kinds=tuple(kinds), carried=True)
+        return replace(data.recoloured(colours), marks=marks)
 
     def coarse_data(self, nodes: int) -> ClientData:
         """Return the same with at most this many nodes, for a first picture."""
         return self._data(self.scene.coarsened(nodes))
 
     def _data(self, scene: Scene, pyramid: Pyramid | None = None) -> ClientData:
+        """Return the data of a scene for clients; marks are found when they are requested."""
         textures = scene.textures
         colours = colours_of(self.scene, textures.geometry.field, self._background)
         marks = None
         if not self.field.sign_free:  # found when they are requested
             is_flat = self.field.surface.frame is not None
-            kinds = (kind for kind in MARK_PARTS.values() if is_flat or kind != "nullclines")
+            kinds = list(MARK_PARTS.values())
+            if not is_flat:
+                kinds.remove("nullclines")
             marks = Marks(self.scene.structure, tuple(kinds))
         return ClientData(
             textures, colours, self._times, pyramid, traces=True, bodies=self._bodies, marks=marks
@@ -158,14 +162,27 @@ def colours_of(
     """Return the colours of a scene on its field, or on a coarser form of it."""
     look = scene.appearance
     name = scene.scalar_name
+    of_scalar: dict[str, Any] = {}
+    if name is not None:
+        of_scalar["unit"] = scene.field.unit_of(name)
+        of_scalar["number"] = scene.scalar_names.index(name)
+        of_scalar["values"] = scene.scalar_steps(name, field)
+        of_scalar["label"] = scene.whole.label_of(name)
+    cmap = ""
+    if isinstance(look.cmap, str):
+        cmap = look.cmap
+    opacity = 0.0
+    if look.visible:
+        opacity = float(look.opacity)
+    land = None
+    if look.land is not None:
+        land = rgb(look.land)
     return Colours(
         name=name,
-        unit="" if name is None else scene.field.unit_of(name),
-        number=0 if name is None else scene.scalar_names.index(name),
+        **of_scalar,
         choices=choices_of(scene),
-        cmap=look.cmap if isinstance(look.cmap, str) else "",
+        cmap=cmap,
         auto=look.clim is None and look.norm is None,
-        values=None if name is None else scene.scalar_steps(name, field),
         flat=name in scene.field.on_cells,
         scale=scene.colour_scale,
         entries=look.n_colors or ENTRIES,
@@ -173,12 +190,11 @@ def colours_of(
         plain=rgb(look.color),
         background=background,
         lighting=scene.is_lit,
-        opacity=float(look.opacity) if look.visible else 0.0,
+        opacity=opacity,
         bar=scene.has_bar,
-        label="" if name is None else scene.whole.label_of(name),
         coastlines=look.coastlines is not False,
         graticule=look.graticule is not False,
-        land=None if look.land is None else rgb(look.land),
+        land=land,
     )
 
 
@@ -228,9 +244,12 @@ def web_views(mesh: Any, options: Options, *, steps: int | None = None) -> tuple
     scenes = make_scenes(mesh, options)
     notify_section(scenes[0].field.section)
     view = options.view
-    own = ((), tuple(options.view.beside or ()))
     make = partial(WebView, background=view.background, steps=steps, bodies=options.bodies)
-    return tuple(make(scene, own=changes) for scene, changes in zip(scenes, own, strict=False))
+    first, *others = scenes
+    views = [make(first)]
+    for scene in others:
+        views.append(make(scene, own=tuple(view.beside or ())))
+    return tuple(views)
 
 
 def even_steps(count: int, steps: int | None) -> tuple[int, ...]:
@@ -260,11 +279,14 @@ class _Tile:
             nodes = 0
         else:
             nodes = self.textures.geometry.field.valid.size
-        return NODE_BYTES * nodes + (0 if self.packing is None else self.packing.nbytes)
+        nbytes = NODE_BYTES * nodes
+        if self.packing is not None:
+            nbytes += self.packing.nbytes
+        return nbytes
 
 
 class TileSource:
-    """Source of the parts of a scene, by name; those of tiles are made on request.
+    """Source of the parts of a scene, by name; tiles are made on request.
 
     ::
 
@@ -302,15 +324,17 @@ class TileSource:
         """Return the parts of a tile at time steps, or of the whole; a LookupError if none."""
         if kind in PART_GROUPS:
             return _group(self.scene, kind)
+        parts: Parts = {}
         if kind:
-            return {n: part for step in steps for n, part in self.scene.mark(kind, step).items()}
+            for step in steps:
+                parts |= self.scene.mark(kind, step)
+            return parts
         if key is None:
-            scene = self.scene
-            if steps:
-                parts = {}
-            else:
-                parts = scene.surface()
-            return parts | {n: part for step in steps for n, part in scene.step(step).items()}
+            if not steps:
+                parts |= self.scene.surface()
+            for step in steps:
+                parts |= self.scene.step(step)
+            return parts
         tile = self.tile(key, steps)
         parts = tile_parts(key, tile, *steps)
         if tile is not None:
@@ -342,7 +366,9 @@ class TileSource:
                 return _Tile(pyramid.textures(key), None)
             # Slices that are sent have a halo large enough for these steps.
             textures = pyramid.tile(key, [scene.source(step) for step in steps])
-            return _Tile(textures, None if textures is None else packing_of(textures))
+            if textures is None:
+                return _Tile(None, None)
+            return _Tile(textures, packing_of(textures))
 
         textures = self._tiles.get(key, make).textures
         if textures is None:
@@ -375,11 +401,15 @@ class TileSource:
             level = scene.pyramid.children(None)
         while scene.pyramid is not None and level and level[0].level >= scene.finest:
             keys += level
-            level = [child for key in level for child in scene.pyramid.children(key)]
+            finer: list[TileKey] = []
+            for key in level:
+                finer += scene.pyramid.children(key)
+            level = finer
         starts = range(0, len(keys), MOST_THREADS)
         for n in track(starts, len(starts), "Packing tiles"):
             futures = [self.ask(key, steps) for key in keys[n : n + MOST_THREADS]]
-            yield from (future.result() for future in futures)
+            for future in futures:
+                yield future.result()
 
     def close(self) -> None:
         """Stop making parts."""
@@ -388,6 +418,7 @@ class TileSource:
 
 
 def _group(scene: ClientData, group: str) -> Parts:
+    """Return a group of parts of the surface; for controls also its outermost nodes."""
     parts = {}
     for name, part in scene.surface().items():
         if name in PART_GROUPS[group]:
@@ -398,10 +429,10 @@ def _group(scene: ClientData, group: str) -> Parts:
     nodes = nodes[np.isfinite(nodes).all(axis=1)]
     directions = np.random.default_rng(0).normal(size=(DIRECTIONS, 3))
     directions = np.concatenate([directions, np.eye(3), -np.eye(3)])
+    farthest = set()
     if len(nodes):
-        farthest = {int((nodes @ d).argmax()) for d in directions}
-    else:
-        farthest = set()
+        for direction in directions:
+            farthest.add(int((nodes @ direction).argmax()))
     return {**parts, "position": np.ascontiguousarray(nodes[sorted(farthest)], "<f4")}
 
 
@@ -423,7 +454,9 @@ def first_parts(scene: ClientData, time: float) -> Parts:
     parts = scene.surface()
     for step in scene.moment(time):
         parts |= scene.values(step, shown=True)
-        parts |= {n: p for n, p in scene.step(step).items() if not n.startswith("scalars/")}
+        for name, part in scene.step(step).items():
+            if not name.startswith("scalars/"):
+                parts[name] = part
     return parts
 
 

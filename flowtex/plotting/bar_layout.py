@@ -95,14 +95,16 @@ def checked_bar_options(options: Mapping[str, Any] | None) -> dict[str, Any]:
     """
     parameters = inspect.signature(pv.Plotter.add_scalar_bar).parameters
     known = [name for name in parameters if name not in ("self", *OWN_ARGUMENTS)]
-    given = dict(options or {})
-    for name in given:
+    given = {}
+    for name, value in (options or {}).items():
         if name not in known:
             raise FieldError(
                 f"scalar_bar_args has {name!r}; expected some of {', '.join(known)}. The colours "
                 "are arguments of the flow, such as cmap and clim"
             )
-    return {name: value for name, value in given.items() if value is not None}
+        if value is not None:
+            given[name] = value
+    return given
 
 
 def first_arguments(options: Mapping[str, Any]) -> dict[str, Any]:
@@ -182,14 +184,16 @@ def _write_labels(bar: vtkScalarBarActor, options: Mapping[str, Any]) -> list[st
     if marks:
         return marks
     form = bar.GetLabelFormat()
-    return [form % v if "%" in form else form.format(v) for v in shown]
+    if "%" in form:
+        return [form % value for value in shown]
+    return [form.format(value) for value in shown]
 
 
 def _colour_texts(
     bar: vtkScalarBarActor, background: Sequence[float], options: Mapping[str, Any]
 ) -> None:
     """Make the texts of a bar readable on a background, unless users have chosen colours."""
-    if any(name in options for name in BEHIND):
+    if not options.keys().isdisjoint(BEHIND):
         return
     ink = (1.0,) * 3
     plate = (0.0,) * 3
@@ -205,11 +209,14 @@ def _colour_texts(
 
 @lru_cache(16)
 def _round_labels(low: float, high: float, *, log_scale: bool) -> vtkDataArray:
+    """Return round values within a range, or its ends, for VTK."""
     values = round_values(low, high, log_scale=log_scale, steps=(1, 2, 5, 10))
     clipped = np.clip(values, low, high)
     # A value just beyond an end would be written with all digits of the end.
     is_round = np.isclose(clipped, values, rtol=0, atol=1e-9 * (high - low))
-    return numpy_to_vtk(clipped[is_round] if is_round.sum() > 1 else clipped, deep=True)
+    if is_round.sum() > 1:
+        clipped = clipped[is_round]
+    return numpy_to_vtk(clipped, deep=True)
 
 
 def _even_values(limits: tuple[float, float], number: int, *, log_scale: bool) -> Any:
@@ -275,12 +282,13 @@ def _fit_texts(
     if width > room and "title_font_size" not in options:
         title.SetFontSize(max(int(title.GetFontSize() * room / width), LEAST_TITLE))
         width, height = _size(title, bar.GetTitle(), dpi)
-    label_width = max((_size(label, text, dpi)[0] for text in labels), default=0)
-    ends = []
+    label_width = 0
+    for text in labels:
+        label_width = max(label_width, _size(label, text, dpi)[0])
+    end_width = 0.0
     for name in END_LABELS:
         if name in options:
-            ends.append(options[name])
-    end_width = max((_size(label, text, dpi)[0] + END_LINE * em for text in ends), default=0.0)
+            end_width = max(end_width, _size(label, options[name], dpi)[0] + END_LINE * em)
     return Texts(em, pad, width, height, label_width, end_width)
 
 

@@ -9,7 +9,7 @@ from weakref import WeakKeyDictionary
 import numpy as np
 import pyvista as pv
 
-from flowtex._util.array_types import Bytes
+from flowtex._util.array_types import Bytes, Indices
 from flowtex._util.colours import ZERO_SHARE, rounded_ends
 from flowtex.plotting.bar_layout import END_LABELS, first_arguments, place_bar
 from flowtex.rendering.vtk.flow_mapper import Ends, FlowMapper, NormTable
@@ -23,8 +23,8 @@ _mesh_ranges: WeakKeyDictionary[Any, tuple[float, float]] = WeakKeyDictionary()
 class FlowBar:
     """The colour bar of one flow, which others with the same title and colours share.
 
-    All of them have one range: the limits that some of them choose, or else those of all their
-    values, as PyVista's meshes have it. It does not depend on the order of changes.
+    All of them have one range: the limits that users choose for some of them, or else the range of
+    all values, as for PyVista's meshes. It does not depend on the order of changes.
     """
 
     def __init__(self, plotter: Any, mapper: FlowMapper, options: Mapping[str, Any]) -> None:
@@ -72,24 +72,30 @@ class FlowBar:
         self.fit()
 
     def _find_key(self, name: str, title: str) -> str:
-        """Return the key of the first bar that fits, or else one that no bar has."""
-        numbered = [f"{name} {n}" for n in range(2, len(self._bars) + 2)]
-        keys = [name, *numbered]
-        fitting = [key for key in keys if key in self._bars and self._fits(key, title)]
-        free = [key for key in keys if key not in self._bars]
-        return next(iter([*fitting, *free]))
+        """Return the key of the first bar that fits, or else an unused key."""
+        free = []
+        for n in range(1, len(self._bars) + 2):
+            key = name
+            if n > 1:
+                key = f"{name} {n}"
+            if key not in self._bars:
+                free.append(key)
+            elif self._fits(key, title):
+                return key
+        return free[0]
 
     def _fits(self, key: str, title: str) -> bool:
         """Return whether a bar has the same title and colours, in the same renderer."""
         bar = self._bars[key]
-        return (
-            bar.GetTitle() in (title, key)  # which PyVista takes as the title
-            and bool(self._renderer.HasViewProp(bar))
-            and all(_same_colours(self._mapper, m) for m in self._bars._scalar_bar_mappers[key])
-        )
+        if bar.GetTitle() not in (title, key):  # PyVista takes the key as the title
+            return False
+        if not self._renderer.HasViewProp(bar):
+            return False
+        mappers = self._bars._scalar_bar_mappers[key]
+        return all(_same_colours(self._mapper, mapper) for mapper in mappers)
 
     def fit(self) -> None:
-        """Give all that share the bar the limits that some choose, or else those of all."""
+        """Give all that share the bar the limits chosen for some, or the range of all values."""
         if self._mapper not in self._sharing:
             self._mapper.scalar_range = self._mapper.ends.limits
             return
@@ -101,39 +107,57 @@ class FlowBar:
         if self._mapper not in sharing:  # a user has removed the bar
             self.key = None
             return
-        flows = [mapper for mapper in sharing if isinstance(mapper, FlowMapper)]
+        flows = _flows(sharing)
         if flows[0] is not self._mapper:
             return
         if self._mapper.fitted_with != _identities(sharing):  # a mesh has joined or left
             self.fit()
-        ends = [_ends(mapper) for mapper in sharing]
+        ends = list(map(_ends, sharing))
         bar = self._bars[self.key]
         limits = self._mapper.scalar_range
         shown = (bar.GetLookupTable(), limits, ends, settings)
         if shown == self._shown:
             return
         own = self._mapper.lookup_table
-        log_scale = own.log_scale
-        is_mixed = len(flows) < len(sharing)
-        table = pv.LookupTable(values=own.values if is_mixed else colours())
-        table.scalar_range, table.log_scale = rounded_ends(*limits, log_scale=log_scale), log_scale
+        if len(flows) < len(sharing):  # meshes share it
+            table = pv.LookupTable(values=own.values)
+        else:
+            table = pv.LookupTable(values=colours())
+        table.scalar_range = rounded_ends(*limits, log_scale=own.log_scale)
+        table.log_scale = own.log_scale
         if isinstance(own, NormTable):  # along its bar are places, with the values as texts
-            table.scalar_range, table.annotations = (0.0, 1.0), own.marks
+            table.scalar_range = (0.0, 1.0)
+            table.annotations = own.marks
         bar.SetLookupTable(table)
         self._shown = (table, *shown[1:])
-        least, most = _joined(each.values for each in ends)
+        self._draw_beyond(table, limits, _joined(each.values for each in ends))
+        self._draw_labels(has_marks=isinstance(own, NormTable))
+
+    def _draw_beyond(
+        self, table: pv.LookupTable, limits: tuple[float, float], values: tuple[float, float]
+    ) -> None:
+        """Draw the colours of values beyond the limits, where there are values or a label."""
+        least, most = values
         rounding = ZERO_SHARE * (most - least)
         below = limits[0] > least + rounding or "below_label" in self._options
         above = limits[1] < most - rounding or "above_label" in self._options
-        swatches = own.below_range_color, own.above_range_color
-        table.below_range_color = (swatches[0] or table.values[0]) if below else None
-        table.above_range_color = (swatches[1] or table.values[-1]) if above else None
+        own = self._mapper.lookup_table
+        table.below_range_color = None
+        if below:
+            table.below_range_color = own.below_range_color or table.values[0]
+        table.above_range_color = None
+        if above:
+            table.above_range_color = own.above_range_color or table.values[-1]
+        bar = self._bars[self.key]
         bar.SetDrawBelowRangeSwatch(below)
         bar.SetDrawAboveRangeSwatch(above)
+
+    def _draw_labels(self, *, has_marks: bool) -> None:
+        """Write numbers beside the bar, or the texts of the marks of a norm."""
         # Others are marks without a text; VTK writes them on the side without labels.
-        has_marks = isinstance(own, NormTable)
         has_labels = self._options.get("n_labels", 1) >= 1
-        has_ends = any(name in self._options for name in END_LABELS)
+        has_ends = not self._options.keys().isdisjoint(END_LABELS)
+        bar = self._bars[self.key]
         bar.SetDrawAnnotations((has_marks and has_labels) or has_ends)
         bar.SetDrawTickLabels(not has_marks and has_labels)
         bar.SetTextPosition(int(not has_marks))
@@ -153,9 +177,9 @@ class FlowBar:
 
 
 def _fit_range(bars: Any, key: str | None) -> None:
-    """Give all that share a bar the limits that some choose, or else those of all of them."""
+    """Give all that share a bar the limits chosen for some, or the range of all values."""
     sharing = bars._scalar_bar_mappers[key]
-    ends = [_ends(mapper) for mapper in sharing]
+    ends = list(map(_ends, sharing))
     chosen = [each for each in ends if each.are_chosen]
     limits = _joined(each.limits for each in chosen or ends)
     for mapper in sharing:
@@ -189,18 +213,31 @@ def _ends(mapper: Any) -> Ends:
 def _remember_meshes(mappers: Iterable[Any]) -> None:
     """Remember the ranges of meshes before the first flow shares their bar."""
     mappers = list(mappers)
-    if not any(isinstance(mapper, FlowMapper) for mapper in mappers):
-        _mesh_ranges.update({mapper: mapper.scalar_range for mapper in mappers})
+    if _flows(mappers):
+        return
+    for mapper in mappers:
+        _mesh_ranges[mapper] = mapper.scalar_range
+
+
+def _flows(mappers: Iterable[Any]) -> list[FlowMapper]:
+    """Return the mappers that draw flows."""
+    return [mapper for mapper in mappers if isinstance(mapper, FlowMapper)]
 
 
 def _same_colours(one: Any, other: Any) -> bool:
     """Return whether two mappers have the same colour map, however many entries it has."""
-    tables = [mapper.lookup_table for mapper in (one, other)]
-    if one is other or any(type(table) is not pv.LookupTable for table in tables):
-        return one is other
-    first, second = (
-        np.asarray(table.values, dtype=int)[np.arange(COMPARED) * table.n_values // COMPARED]
-        for table in tables
-    )
-    same = tables[0].log_scale == tables[1].log_scale
-    return same and bool((np.abs(first - second) <= SAME_BYTES).all())
+    if one is other:
+        return True
+    first = one.lookup_table
+    second = other.lookup_table
+    if type(first) is not pv.LookupTable or type(second) is not pv.LookupTable:
+        return False
+    if first.log_scale != second.log_scale:
+        return False
+    return bool((np.abs(_compared(first) - _compared(second)) <= SAME_BYTES).all())
+
+
+def _compared(table: pv.LookupTable) -> Indices:
+    """Return evenly spaced colours of a table, (COMPARED, 4)."""
+    numbers = np.arange(COMPARED) * table.n_values // COMPARED
+    return np.asarray(table.values, dtype=int)[numbers]

@@ -118,13 +118,13 @@ class FlowtexComponent:
         options |= {"vectors": vectors, "scalars": scalars, "cmap": cmap}
         chosen = Options.split("field", "appearance", **options)
         (scene,) = make_scenes(mesh, chosen)
-        actor: Any = dict(name=name, label=label, pickable=pickable, show_edges=show_edges)
-        actor |= dict(edge_color=edge_color, line_width=line_width)
+        of_actor: Any = dict(name=name, label=label, pickable=pickable, show_edges=show_edges)
+        of_actor |= dict(edge_color=edge_color, line_width=line_width)
+        for argument in list(of_actor):
+            if of_actor[argument] is None:
+                del of_actor[argument]
         handle = self.add_scene(
-            scene,
-            scalar_bar_args=scalar_bar_args,
-            reset_camera=reset_camera,
-            **{name: value for name, value in actor.items() if value is not None},
+            scene, scalar_bar_args=scalar_bar_args, reset_camera=reset_camera, **of_actor
         )
         handle.follow_mesh(mesh, chosen.field)
         return handle
@@ -137,7 +137,7 @@ class FlowtexComponent:
         reset_camera: bool | None = None,
         **actor_options: Any,
     ) -> FlowHandle:
-        """Draw a scene; the parameters are those of :meth:`add`."""
+        """Draw a scene; the parameters are as for :meth:`add`."""
         first = not self._plotter.renderer.actors
         handle = FlowHandle(
             self._plotter, scene, self._handles.remove, scalar_bar_args, **actor_options
@@ -159,10 +159,13 @@ class FlowtexComponent:
             return
         if renderer not in self._turned and not present.sees_edge_on(surface):
             return
-        shown = [handle for handle in self._handles if handle.renderer is renderer]
-        surfaces = [handle.scene.whole.surface for handle in shown]
-        points = np.concatenate([each.points[each.valid] for each in surfaces])
-        apply_camera(Camera.aside(points, aspect_of(plotter)), plotter.camera)
+        points = []
+        for handle in self._handles:
+            if handle.renderer is renderer:
+                drawn = handle.scene.whole.surface
+                points.append(drawn.points[drawn.valid])
+        aside = Camera.aside(np.concatenate(points), aspect_of(plotter))
+        apply_camera(aside, plotter.camera)
         self._pointed[renderer] = read_camera(plotter.camera)
         self._turned.add(renderer)
 
@@ -204,10 +207,12 @@ class FlowtexComponent:
         if name is not None:
             table = np.asarray(mapper.lookup_table.values)
             colours = {"scalars": name, "cmap": table, "clim": tuple(mapper.scalar_range)}
+        if image is not None:
+            image = as_image(image)
         return {
             **dict(handle.settings),
             **colours,
-            "image": None if image is None else as_image(image),
+            "image": image,
             "lighting": bool(prop.lighting),
             "opacity": float(prop.opacity),
             "show_scalar_bar": bool(self._plotter.scalar_bars),
@@ -413,7 +418,10 @@ def _coloured(mesh: pv.DataSet, mapper: Any, prop: vtkProperty) -> pv.PolyData:
     opacity = prop.GetOpacity() * colours[:, 3]
     colours[:, 3] = np.where(opacity < 255, np.minimum(np.rint(opacity), 254), 255)
     on_points = len(colours) == mesh.n_points
-    (copy.point_data if on_points else copy.cell_data)[COLOURS] = colours
+    if on_points:
+        copy.point_data[COLOURS] = colours
+    else:
+        copy.cell_data[COLOURS] = colours
     if normals is not None and prop.GetInterpolation():
         copy.point_data.active_normals = normals
     if isinstance(copy, pv.PolyData):
@@ -438,11 +446,11 @@ def _parts_of(surface: pv.PolyData, prop: vtkProperty) -> Iterator[Body]:
     if style == "Wireframe":
         yield _body(edges, ends, 0, width=width)
         return
-    light = {"ambient": prop.GetAmbient(), "diffuse": prop.GetDiffuse()}
+    light = {}
+    if prop.GetLighting():
+        light = {"ambient": prop.GetAmbient(), "diffuse": prop.GetDiffuse()}
     first = plain.n_verts + plain.n_lines
-    yield _body(
-        plain, plain.regular_faces.reshape(-1, 3), first, **(light if prop.GetLighting() else {})
-    )
+    yield _body(plain, plain.regular_faces.reshape(-1, 3), first, **light)
     if prop.GetEdgeVisibility():
         yield _body(edges, ends, 0, width=width, colour=prop.GetEdgeColor())
 
@@ -450,7 +458,6 @@ def _parts_of(surface: pv.PolyData, prop: vtkProperty) -> Iterator[Body]:
 def _body(mesh: pv.PolyData, cells: Indices, first: int, colour: Any = None, **look: float) -> Body:
     """Return triangles or pieces of lines from a first cell on, apart if cells have colours."""
     count = cells.shape[1]
-    normals = mesh.point_data.active_normals
     if COLOURS in mesh.cell_data:
         own = np.asarray(mesh.cell_data[COLOURS])[first : first + len(cells)]
         colours = np.repeat(own, count, axis=0)
@@ -470,14 +477,11 @@ def _body(mesh: pv.PolyData, cells: Indices, first: int, colour: Any = None, **l
         pieces = cells
     else:
         pieces = np.zeros((0, 2), np.intp)
-    return Body(
-        np.asarray(mesh.points, dtype=float)[used],
-        np.asarray(colours),
-        faces,
-        pieces,
-        normals=None if normals is None else np.asarray(normals, dtype=float)[used],
-        **look,
-    )
+    normals: Any = mesh.point_data.active_normals
+    if normals is not None:
+        normals = np.asarray(normals, dtype=float)[used]
+    points = np.asarray(mesh.points, dtype=float)[used]
+    return Body(points, np.asarray(colours), faces, pieces, normals=normals, **look)
 
 
 def _plain(values: Iterable[float]) -> tuple[float, ...]:
@@ -489,6 +493,7 @@ def _bytes(colour: ArrayLike) -> Bytes:
 
 
 def _labels(actor: Any) -> Iterator[Label]:
+    """Yield the labels of an actor."""
     if actor.IsA("vtkActor2D"):
         mapper = actor.GetMapper()
     else:

@@ -38,8 +38,11 @@ def _state(mesh: Any) -> tuple[int, ...]:
         meshes = mesh
     else:
         meshes = [mesh]
-    blocks = (block for one in meshes if isinstance(one, pv.DataObject) for _, block in leaves(one))
-    return tuple(block.GetMTime() for block in blocks)
+    times = []
+    for one in meshes:
+        if isinstance(one, pv.DataObject):
+            times += [block.GetMTime() for _, block in leaves(one)]
+    return tuple(times)
 
 
 class FlowHandle(AppearanceAttributes):
@@ -287,6 +290,7 @@ class FlowHandle(AppearanceAttributes):
             self.remove(render=False)
 
     def _changed(self, affects: Change) -> None:
+        """Draw the scene again after a change."""
         self._structure.show(self.scene)
         if affects == "uniform":  # perhaps the time: textures at the steps around it, and colours
             if not self.field.steady and self._shown_time != self.scene.time:
@@ -308,9 +312,9 @@ class FlowHandle(AppearanceAttributes):
         self._shown = new
 
         def differs(*names: str) -> bool:
-            return any(
-                old is None or n in anew or getattr(old, n) is not getattr(new, n) for n in names
-            )
+            if old is None or not set(anew).isdisjoint(names):
+                return True
+            return any(getattr(old, name) is not getattr(new, name) for name in names)
 
         prop = self.actor.prop
         if differs("opacity"):
@@ -318,10 +322,11 @@ class FlowHandle(AppearanceAttributes):
         if differs("visible"):
             self.actor.SetVisibility(new.visible)
         if differs("lighting"):
-            prop.lighting = is_lit = self.scene.is_lit
-            theme_lighting = pv.global_theme.lighting_params
+            prop.lighting = self.scene.is_lit
             for name, value in LIGHT.items():
-                setattr(prop, name, value if is_lit else getattr(theme_lighting, name))
+                if not self.scene.is_lit:
+                    value = getattr(pv.global_theme.lighting_params, name)
+                setattr(prop, name, value)
         if old is not None and differs("coastlines", "graticule", "land", "lighting", "opacity"):
             self._map.show(self.scene)
         if differs("color"):
@@ -353,13 +358,16 @@ class FlowHandle(AppearanceAttributes):
         )
 
     def _show_bar(self) -> None:
+        """Show the bar of the colours, or remove it where the scene has none."""
         name = self.scene.scalar_name
         if name is None or not self.scene.has_bar:
             self.bar.remove()
             return
         title = self.scene.title_of(name)
         # The name alone is that of PyVista's bars; the speed is no array of theirs.
-        self.bar.show(name if name in self.field.scalars else title, title)
+        if name not in self.field.scalars:
+            name = title
+        self.bar.show(name, title)
         self._look_at_bar()
 
     def _look_at_bar(self) -> None:

@@ -137,6 +137,7 @@ class Overlay:
         variant: frozenset[str] = frozenset(),
         *shape: Any,
     ) -> pv.Actor:
+        """Show a mesh that moves with the flow, and return its actor."""
         actor = plain_actor(mesh)
         actor.SetUserMatrix(self._actor.GetMatrix())
         insert_text(actor, "flowtex overlay", prefix, variant)
@@ -161,8 +162,9 @@ class Overlay:
         camera = renderer.GetActiveCamera()
         near, far = camera.GetClippingRange()
         # The depth in clip space by which a point comes nearer by its distance.
-        nearer = 2 * (camera.GetDistance() if camera.GetParallelProjection() else near * far)
-        nearer /= far - near
+        nearer = 2 * near * far / (far - near)
+        if camera.GetParallelProjection():
+            nearer = 2 * camera.GetDistance() / (far - near)
         viewport = [*map(float, renderer.GetOrigin()), *map(float, renderer.GetSize())]
         height = renderer.GetSize()[1]
         density = self._surface.view.density
@@ -283,6 +285,7 @@ class MapOverlay(Overlay):
             actor.prop.diffuse = const.DIFFUSE_LIGHT
 
     def _before_frame(self) -> None:
+        """Set the colour of places without data, and the globe below the flow."""
         renderer = self._renderer()
         radius = self._radius
         if renderer is not None:
@@ -336,11 +339,14 @@ class StructureOverlay(Overlay):
 
     @property
     def _key(self) -> tuple[object, ...]:
+        """All that determines which structure is drawn."""
         scene = self._scene
         settings = self._scene.settings
         counts = settings.critical_points, settings.separatrices, int(settings.nullclines)
-        window = self._window
-        return id(scene.field), scene.step, *counts, None if window is None else window.tobytes()
+        window = None
+        if self._window is not None:
+            window = self._window.tobytes()
+        return id(scene.field), scene.step, *counts, window
 
     @property
     def _window(self) -> Floats | None:
@@ -381,7 +387,9 @@ class StructureOverlay(Overlay):
             return
         self._shown = self._key
         drawn = strokes(scene.structure, settings, scene.step, self._window)
-        for pieces, color, width, above in (stroke for stroke in drawn if len(stroke[0])):
+        for pieces, color, width, above in drawn:
+            if not len(pieces):
+                continue
             forms = ((0.0, piece_mesh(pieces[:, 0], pieces[:, 1])),)
             if color == RIM_COLOR:
                 opacity = RIM_OPACITY

@@ -182,14 +182,11 @@ def build(
         check_room(place, listed(store_at(place, read_only=False).list_dir))
     data = source_of(source, **options)
     about = about_source(data, parameter, data.chosen_lines(lines))
-    invalid = []
     for name in about["scalars"]:
         if not is_scalar_name(name):
-            invalid.append(name)
-    if invalid:
-        raise FieldError(
-            f"scalar {invalid[0]!r} cannot be stored; expected a name without '/': rename it"
-        )
+            raise FieldError(
+                f"scalar {name!r} cannot be stored; expected a name without '/': rename it"
+            )
     threads = Threads(memory)
     if scheduler is None:
         workers = threads
@@ -203,12 +200,17 @@ def build(
             # Corrupt and incomplete objects are removed.
             units = sorted({*_existing_units(run)}, key=repr)
             run.work(workers, mend, units, "Checking existing objects", TILE_BYTES, new=False)
-        _write_finest(run, data, workers if data.travels else threads)
+        if data.travels:
+            _write_finest(run, data, workers)
+        else:
+            _write_finest(run, data, threads)
         for level in range(1, depth + 1):
             parts = _missing_parts(run, level, level_shape(data.shape, level))
             run.work(workers, make_part, parts, f"Level {level} of {depth}", PART_BYTES)
         run.update(levels_done=True)
-        tasks = [task for level in range(depth, -1, -1) for task in _missing_tiles(run, level)]
+        tasks: list[TileTask] = []
+        for level in range(depth, -1, -1):
+            tasks += _missing_tiles(run, level)
         run.work(workers, make_tile, tasks, "Tiles", TILE_BYTES)
         run.update(complete=True)
     return Built(place, depth, run.made, run.kept)
@@ -266,9 +268,9 @@ def verify(store: str | Path, *, progress: bool = True) -> list[str]:
     for level in range(about["depth"] + 1):
         parts = parts_of(level, levels.shape(level), len(about["times"]))
         units += [(part,) for part in parts]
-        rows, columns = tiles_of(level, levels.shape(level), about)
-        keys = (TileKey(level, row, column) for row in range(rows) for column in range(columns))
-        units += [(TileTask(key, tuple(range(len(about["times"])))),) for key in keys]
+        steps = tuple(range(len(about["times"])))
+        for row, column in np.ndindex(tiles_of(level, levels.shape(level), about)):
+            units.append((TileTask(TileKey(level, row, column), steps),))
     with closing(Threads().run(inspect, units, TILE_BYTES)) as results:
         for error in track(results, len(units), "Verifying", show=progress):
             if error is not None:
@@ -279,6 +281,7 @@ def verify(store: str | Path, *, progress: bool = True) -> list[str]:
 def _prepared(
     place: str, about: dict[str, Any], source: NodeSource, *, fresh: bool
 ) -> tuple[Group, dict[str, Any], bool]:
+    """Return the group of a store, its description, and whether it is new."""
     zarr = import_extra("zarr", "store")
     store = store_at(place, read_only=False)
     if fresh:
@@ -340,8 +343,12 @@ class _Run:
         prefix = f"{array.path}/c/"
         # A file that is being written is not a shard yet.
         keys = listed(array.store.list_prefix, prefix)
-        numbers = (key.removeprefix(prefix).split("/") for key in keys)
-        return {tuple(map(int, parts)) for parts in numbers if all(map(str.isdecimal, parts))}
+        found = set()
+        for key in keys:
+            numbers = key.removeprefix(prefix).split("/")
+            if all(map(str.isdecimal, numbers)):
+                found.add(tuple(map(int, numbers)))
+        return found
 
     def work(
         self,
@@ -355,7 +362,11 @@ class _Run:
     ) -> None:
         """Run tasks that need ``need`` bytes each, and raise when some have failed."""
         if new:
-            self.made += sum(len(t.steps) if isinstance(t, TileTask) else 1 for t in tasks)
+            for task in tasks:
+                if isinstance(task, TileTask):
+                    self.made += len(task.steps)
+                else:
+                    self.made += 1
         named = [(self.place, self.name, task) for task in tasks]
         first = None
         failed = 0

@@ -62,8 +62,10 @@ class FinestOfLevels:
 
     def _finer_index(self, index: Floats, level: int) -> Floats:
         """Return (j, i) of a level as the one of the next finer level."""
-        both = zip(index, self._pyramid.nodes, strict=True)
-        return np.array([_renumbered(at, n, level, level - 1) for at, n in both])
+        finer = []
+        for at, count in zip(index, self._pyramid.nodes, strict=True):
+            finer.append(_renumbered(at, count, level, level - 1))
+        return np.array(finer)
 
     def _coarse_index(
         self, lines: tuple[Indices, Indices], found: tuple[float, float]
@@ -97,7 +99,9 @@ class FinestOfLevels:
             lines = self._lines(index, level)
             inside = []
             for numbers, count, is_closed in zip(lines, shape, closed, strict=True):
-                inside.append(numbers % (count - 1) if is_closed else numbers)
+                if is_closed:
+                    numbers = numbers % (count - 1)
+                inside.append(numbers)
             points = self._positions(level, *inside)[0]
             finder = _locator(points, None, self._pyramid.field.projection)
             found = finder.nearest(place[None])[0][0]
@@ -167,6 +171,7 @@ class FinestOfRegions:
         return FinePart(part, coarse_index)
 
     def _part(self, rows: Indices, columns: Indices) -> FlowField:
+        """Return some rows and columns of the field, whose steps are read late."""
         source = self._source
         kept = slice(int(rows[0]), int(rows[-1]) + 1), slice(int(columns[0]), int(columns[-1]) + 1)
         valid = source.nodes(0, *kept).valid
@@ -200,6 +205,7 @@ def coarse_lines(field: FlowField) -> tuple[Floats, Floats]:
 
 
 def _around(line: Floats, value: float, period: float) -> Indices:
+    """Return the numbers of the lines around a value."""
     distance = line - value
     if np.isfinite(period):
         distance -= period * np.rint(distance / period)

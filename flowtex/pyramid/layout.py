@@ -116,13 +116,8 @@ class Part(NamedTuple):
 
 def parts_of(level: int, shape: tuple[int, int], steps: int) -> list[Part]:
     """Return the parts of a level."""
-    rows, columns = (range(n) for n in parts_along(shape))
-    found = []
-    for t in range(steps):
-        for j in rows:
-            for i in columns:
-                found.append(Part(level, t, j, i))
-    return found
+    rows, columns = parts_along(shape)
+    return [Part(level, *numbers) for numbers in np.ndindex(steps, rows, columns)]
 
 
 def parts_along(shape: tuple[int, int]) -> tuple[int, int]:
@@ -151,10 +146,14 @@ def about_source(source: NodeSource, parameter: str, lines: str) -> dict[str, An
     field = source.field
     depth = root_level(source.shape)
     corner = source.points(np.array([0]), np.array([0]))
+    texts = {name: getattr(field, name) for name in TEXTS}
+    components = 3
+    if source.flat:
+        components = 2
     return {
         "format": FORMAT,
         "version": __version__,
-        **{name: getattr(field, name) for name in TEXTS},
+        **texts,
         "times": field.times.tolist(),
         "start": written_date(field.start),
         "projection": field.projection and field.projection.written,
@@ -165,7 +164,7 @@ def about_source(source: NodeSource, parameter: str, lines: str) -> dict[str, An
         "tile_cells": TILE_CELLS,
         "parameter": parameter,
         "lines": lines,
-        "components": 2 if source.flat else 3,
+        "components": components,
         "height": float(corner[0, 0, 2]),
         "axes": source.rectilinear,
         "late": source.late or len(field.times) > MOST_HELD,
@@ -191,19 +190,21 @@ def described(about: About, levels: Iterable[int] | None = None) -> Group:
     }
     zarr = import_extra("zarr", "store")
     group: Group = zarr.group(zarr.storage.MemoryStore(), attributes=attributes, zarr_format=3)
-    for level in range(about["depth"] + 1) if levels is None else levels:
+    if levels is None:
+        levels = range(about["depth"] + 1)
+    for level in levels:
         _create_level(group, level, about)
     return group
 
 
 def _create_level(group: Group, level: int, about: About) -> None:
+    """Create the arrays of a level."""
     shape = level_shape((about["nodes"][0], about["nodes"][1]), level)
     subgroup = group.require_group(str(level))
     steps = len(about["times"])
-    nodes = {
-        axis: (count, TILE_CELLS, chunks * TILE_CELLS)
-        for axis, count, chunks in zip("ji", shape, SHARD_CHUNKS, strict=True)
-    }
+    nodes = {}
+    for axis, count, chunks in zip("ji", shape, SHARD_CHUNKS, strict=True):
+        nodes[axis] = (count, TILE_CELLS, chunks * TILE_CELLS)
     vectors = {**nodes, "component": (about["components"],) * 3}
     nodal = partial(create_array, nodal=True)
     nodal(subgroup, "velocity", "float32", {"time": (steps, 1, 1), **vectors})
@@ -215,8 +216,13 @@ def _create_level(group: Group, level: int, about: About) -> None:
             create_array(subgroup, name, "float64", {axis: (count, count)})
     else:
         nodal(subgroup, "points", "float64", vectors)
-    parts = zip(("time", "part_row", "part_column"), (steps, *parts_along(shape)), strict=True)
-    digests = {**{axis: (n, 1) for axis, n in parts}, "digest_byte": (DIGEST_BYTES, DIGEST_BYTES)}
+    part_rows, part_columns = parts_along(shape)
+    digests = {
+        "time": (steps, 1),
+        "part_row": (part_rows, 1),
+        "part_column": (part_columns, 1),
+        "digest_byte": (DIGEST_BYTES, DIGEST_BYTES),
+    }
     create_array(subgroup, DIGESTS, "uint8", digests)
     for name, count in about["scalars"].items():
         series = {"time": (count, 1, 1), **nodes}
@@ -242,14 +248,16 @@ def create_array(
         packer = codecs.BloscCodec(cname="zstd", clevel=ZSTD_LEVEL, shuffle="bitshuffle")
     shape, chunks, *shards = zip(*axes.values(), strict=True)
     last = len(axes) - 1
-    by_component = nodal and "component" in axes
+    filters = []
+    if nodal and "component" in axes:
+        filters.append(codecs.TransposeCodec(order=(last, *range(last))))
     group.create_array(
         name,
         shape=shape,
         chunks=chunks,
-        shards=shards[0] if shards else None,
+        shards=next(iter(shards), None),
         dtype=dtype,
-        filters=[codecs.TransposeCodec(order=(last, *range(last)))] if by_component else [],
+        filters=filters,
         compressors=[packer, codecs.Crc32cCodec()],
         fill_value=0,
         dimension_names=list(axes),
@@ -302,7 +310,10 @@ def sealed(about: About) -> dict[str, Any]:
 
 
 def _seal(about: About) -> str:
-    text = json.dumps({k: v for k, v in about.items() if k != "seal"}, sort_keys=True)
+    """Return a hash of all entries of a description."""
+    sealed_entries = dict(about)
+    sealed_entries.pop("seal", None)
+    text = json.dumps(sealed_entries, sort_keys=True)
     return digest(words=(text,)).hex()
 
 
@@ -398,8 +409,9 @@ def part_digest(nodes: Nodes, about: About, step: int) -> bytes:
     for k, v in sorted(nodes.scalars.items()):
         if step < about["scalars"][k]:
             scalars[k] = v
-    values = [nodes.velocity[..., : about["components"]], *scalars.values()]
-    arrays: list[AnyArray] = [np.asarray(array, np.float32) for array in values]
+    arrays: list[AnyArray] = []
+    for values in (nodes.velocity[..., : about["components"]], *scalars.values()):
+        arrays.append(np.asarray(values, np.float32))
     if step == 0:
         arrays += [nodes.points, nodes.valid]
         if nodes.has_position is not None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import itertools
 import json
 import math
 from collections.abc import Callable, Coroutine
@@ -52,6 +53,7 @@ T = TypeVar("T")
 Index = tuple[int | slice, ...]
 LOOK_INTERVAL_S = 0.1  #: Seconds between checks whether the surrounding work was cancelled.
 MOST_LETTERS = 300  #: Most characters of an error of another library that a message repeats.
+SCALARS = "scalars/"  #: Folder of the scalars of a level.
 NUMBER_BYTES = 8  #: Most bytes of a number.
 NODE_BYTES = 24  #: Bytes of a velocity.
 KEPT_BYTES = 64_000_000  #: Most bytes of steps in memory; a longer series is read step by step.
@@ -99,11 +101,11 @@ class Levels:
         with self._lock:
             if top not in self._arrays:
                 members: Any = described(self.about, [int(top)]).members(max_depth=None)
-                self._arrays[top] = {
-                    path: bounded(array.metadata, self._objects, path)
-                    for path, array in members
-                    if hasattr(array, "dtype")
-                }
+                arrays = {}
+                for path, array in members:
+                    if hasattr(array, "dtype"):
+                        arrays[path] = bounded(array.metadata, self._objects, path)
+                self._arrays[top] = arrays
             return self._arrays[top][name]
 
     def shape(self, level: int) -> tuple[int, int]:
@@ -134,26 +136,39 @@ class Levels:
             When objects are missing, or differ from what was written.
         """
         level, step, *at = part
-        rows, columns = (np.arange(s.start, s.stop) for s in part.lines(self.shape(level)))
+        row_slice, column_slice = part.lines(self.shape(level))
+        rows = np.arange(row_slice.start, row_slice.stop)
+        columns = np.arange(column_slice.start, column_slice.stop)
         scalars = [name for name, count in self.about["scalars"].items() if step < count]
-        series = ["velocity", *(f"scalars/{name}" for name in scalars)]
-        ground = [*self._places(), "valid", *["has_position"] * self.about["has_position"]]
-        pieces = [_Piece(f"{level}/{DIGESTS}", (step, *at), DIGESTS)]
-        pieces += [self._nodal(level, name, rows, columns, step) for name in series]
+        pieces = {
+            DIGESTS: _Piece(f"{level}/{DIGESTS}", (step, *at), DIGESTS),
+            "velocity": self._nodal(level, "velocity", rows, columns, step),
+        }
+        for name in scalars:
+            pieces[SCALARS + name] = self._nodal(level, SCALARS + name, rows, columns, step)
         if step == 0:
-            pieces += [self._nodal(level, name, rows, columns) for name in ground]
+            for name in self._ground():
+                pieces[name] = self._nodal(level, name, rows, columns)
         words = f"of level {level} at step {step}, part {tuple(at)},"
-        stored_digest, velocity, *rest = self._read(
-            *(piece._replace(name=f"{piece.name} {words}") for piece in pieces)
-        )
-        nodal = dict(zip(ground, rest[len(scalars) :], strict=step == 0))
+        for key, piece in pieces.items():
+            pieces[key] = piece._replace(name=f"{piece.name} {words}")
+        values = dict(zip(pieces, self._read(*pieces.values()), strict=True))
+        velocity = values["velocity"]
+        has_position = None
+        if "has_position" in values:
+            has_position = values["has_position"].astype(bool)
+        # The digests of later steps do not contain positions.
+        positions = velocity
+        if step == 0:
+            positions = self._points([values[name] for name in self._places()], rows, columns)
         nodes = Nodes(
-            self._points([nodal[k] for k in self._places()], rows, columns) if nodal else velocity,
-            nodal.get("valid", velocity).astype(bool),
+            positions,
+            values.get("valid", velocity).astype(bool),
             velocity,
-            dict(zip(scalars, rest[: len(scalars)], strict=True)),
-            nodal["has_position"].astype(bool) if "has_position" in nodal else None,
+            {name: values[SCALARS + name] for name in scalars},
+            has_position,
         )
+        stored_digest = values[DIGESTS]
         if part_digest(nodes, self.about, step) != stored_digest.tobytes():
             raise DamageError(f"velocity {words} of {self.place} differs from what was written")
 
@@ -203,7 +218,9 @@ class Levels:
         if parts:  # something is drawn
             # Browsers compute the speed of a flow that they trace.
             is_traced = any("/flow/" in part for part in parts)
-            counts = dict.fromkeys([] if is_traced else ["speed"], step + 1) | self.about["scalars"]
+            counts = self.about["scalars"]
+            if not is_traced:
+                counts = {"speed": step + 1, **counts}
             for number, scalar in enumerate(value_names(self.about)):
                 if step < counts.get(scalar, 0):
                     self._check_file(VALUES, level, (step, *at, number), f"{scalar} {label}")
@@ -226,7 +243,8 @@ class Levels:
         else:
             tile = [level, *at]
         prefix = "tile/" + "/".join(map(str, tile)) + "/"
-        if owner != self.about["fingerprint"] or not all(n.startswith(prefix) for n in names):
+        belongs = [name.startswith(prefix) for name in names]
+        if owner != self.about["fingerprint"] or not all(belongs):
             raise DamageError(f"{name} of {self.place} belongs to another tile; build it again")
         for first in range(FILE_CHUNK, size, FILE_CHUNK):
             self._read(_Piece(array, (*at, slice(first, first + FILE_CHUNK)), name))
@@ -235,7 +253,8 @@ class Levels:
     def positions(self, level: int, rows: Indices, columns: Indices) -> tuple[Floats, Bools]:
         """Return where nodes are, (J, I, 3), and which of them are valid, (J, I)."""
         names = [*self._places(), "valid"]
-        *places, valid = self._read(*(self._nodal(level, n, rows, columns) for n in names))
+        pieces = [self._nodal(level, name, rows, columns) for name in names]
+        *places, valid = self._read(*pieces)
         return self._points(places, rows, columns), valid.astype(bool)
 
     def nodes(
@@ -243,43 +262,48 @@ class Levels:
     ) -> Nodes:
         """Return the data at some lines of a level, with or without velocities."""
         about = self.about
-        names = [*self._places(), "valid", *["has_position"] * about["has_position"]]
-        series = {f"scalars/{name}": count for name, count in about["scalars"].items()}
+        names = self._ground()
+        series = {}
+        for name, count in about["scalars"].items():
+            series[SCALARS + name] = count
         if velocities:
             series["velocity"] = len(about["times"])
         nbytes = len(rows) * len(columns) * NODE_BYTES
-        late = {
-            name
-            for name, count in series.items()
-            if count > 1 and (about["late"] or count * nbytes > KEPT_BYTES)
-        }
         pieces = [self._nodal(level, name, rows, columns) for name in names]
+        late = set()
         for name, count in series.items():
-            if name not in late:
-                pieces += [self._nodal(level, name, rows, columns, step) for step in range(count)]
+            if count > 1 and (about["late"] or count * nbytes > KEPT_BYTES):
+                late.add(name)
+                continue
+            for step in range(count):
+                pieces.append(self._nodal(level, name, rows, columns, step))
         values = iter(self._read(*pieces))
-        arrays = {name: next(values) for name in names}
+        arrays = dict(zip(names, values, strict=False))
         steps: dict[str, Any] = {}
         for name, count in series.items():
             if name in late:
                 later = self._later(level, name, rows, columns)
                 steps[name] = LazySteps(count, later, kept=KEPT_BYTES)
             else:
-                steps[name] = np.stack([next(values) for _ in range(count)])
+                steps[name] = np.stack(list(itertools.islice(values, count)))
         velocity = steps.pop("velocity", None)
         if velocities and "velocity" not in late:
             velocity = _in_space(velocity)
+        has_position = None
+        if about["has_position"]:
+            has_position = arrays["has_position"].astype(bool)
         return Nodes(
             self._points([arrays[name] for name in self._places()], rows, columns),
             arrays["valid"].astype(bool),
             velocity,
-            {name.removeprefix("scalars/"): values for name, values in steps.items()},
-            arrays["has_position"].astype(bool) if about["has_position"] else None,
+            {name.removeprefix(SCALARS): values for name, values in steps.items()},
+            has_position,
         )
 
     def _later(
         self, level: int, name: str, rows: Indices, columns: Indices
     ) -> Callable[[int], AnyArray]:
+        """Return a function that reads a step of an array."""
 
         def read(step: int) -> AnyArray:
             (values,) = self._read(self._nodal(level, name, rows, columns, step))
@@ -299,7 +323,15 @@ class Levels:
             return ["x", "y"]
         return ["points"]
 
+    def _ground(self) -> list[str]:
+        """Return the names of the arrays without time: positions, and which nodes have data."""
+        names = [*self._places(), "valid"]
+        if self.about["has_position"]:
+            names.append("has_position")
+        return names
+
     def _points(self, places: list[AnyArray], rows: Indices, columns: Indices) -> Floats:
+        """Return positions (J, I, 3) of nodes from the arrays of their places."""
         if not self.about["axes"]:
             return _in_space(places[0], self.about["height"])
         x, y = places
@@ -336,6 +368,7 @@ class Levels:
         return values
 
     async def _values(self, piece: _Piece, array: AsyncArray[ArrayV3Metadata]) -> AnyArray:
+        """Return the values of a piece, floats in double precision."""
         try:
             if piece.lines is None:
                 return np.asarray(await array.getitem(piece.selection))
@@ -351,6 +384,7 @@ class Levels:
             raise self._error(piece.name, error) from None
 
     def _error(self, name: str, error: Exception) -> PyramidError:
+        """Return the error of an array that cannot be read."""
         unread = isinstance(error, MemoryError) or (
             isinstance(error, ReadFault) and not error.missing
         )
@@ -362,13 +396,16 @@ class Levels:
 
 
 def _size(piece: _Piece, array: AsyncArray[ArrayV3Metadata]) -> int:
+    """Return the number of bytes of a piece in memory, at most."""
     shape = array.shape
     selection = piece.selection
     if piece.lines is not None:
         shape = (*map(len, piece.lines), *shape[len(selection) + 2 :])
     else:
-        pairs = zip(selection, shape, strict=False)
-        spans = (len(range(n)[index]) for index, n in pairs if isinstance(index, slice))
+        spans = []
+        for index, count in zip(selection, shape, strict=False):
+            if isinstance(index, slice):
+                spans.append(len(range(count)[index]))
         shape = (*spans, *shape[len(selection) :])
     return int(math.prod(shape)) * NUMBER_BYTES
 
@@ -388,6 +425,7 @@ def _in_space(values: Floats, height: float = 0.0) -> Floats:
 
 
 def _error_text(error: Exception) -> str:
+    """Return the text of an error of reading, as users can act on it."""
     text = str(error)
     if "checksum" in text:
         return "checksum mismatch: the object is corrupt"

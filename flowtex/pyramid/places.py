@@ -30,8 +30,8 @@ T = TypeVar("T")
 FORMAT = "flowtex-pyramid-6"  #: Format of every store; a reader refuses any other.
 BUILDING = "building.json"  #: The object of a store that names the process which builds it.
 DOCUMENT = "zarr.json"
-#: A URL, or one of which ``pathlib`` has made a path, on Windows with its slashes turned; those of
-#: files are paths. One letter is a drive.
+#: A URL, also after ``pathlib`` has made a path of it, on Windows with backslashes. URLs of files
+#: are paths, and a single letter is a drive.
 _URL = re.compile(r"^(?!file:)([A-Za-z][A-Za-z0-9+.-]+):[/\\]{1,2}(?=[^/\\])")
 _FILE_URL = re.compile(r"^file:/{1,3}(?=[^/])")
 _WEB = ("http", "https")  #: Schemes of web servers.
@@ -284,7 +284,9 @@ def check_room(place: str, names: Iterable[str]) -> None:
         raise PyramidError(f"{place} is a file; expected a new or empty folder, or a store")
     others = sorted({*names} - {BUILDING})
     if others and not is_store(place):
-        examples = ", ".join(others[:MOST_NAMES]) + (", …" if len(others) > MOST_NAMES else "")
+        examples = ", ".join(others[:MOST_NAMES])
+        if len(others) > MOST_NAMES:
+            examples += ", …"
         raise PyramidError(
             f"{place} contains other data ({examples}); expected a new or empty folder, or a store"
         )

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import warnings
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any, TypeAlias
@@ -116,16 +116,11 @@ class FieldSource:
         """Return ends of scalars and of the speed, whole and robust."""
         field = self.field
         typical = self.field.typical
-        values = {k: np.asarray(s)[:, field.valid] for k, s in typical.scalars.items()}
+        values = {}
+        for name, steps in typical.scalars.items():
+            values[name] = np.asarray(steps)[:, field.valid]
         values.setdefault("speed", drawn_speeds(typical, Pyramid(field).root))
-        both = {
-            k: [ends_of(v, robust=robust) for robust in (False, True)] for k, v in values.items()
-        }
-        found = {}
-        for name, ends in both.items():
-            if None not in ends:
-                found[name] = ends
-        return found
+        return _whole_and_robust(values)
 
 
 class RegionSource:
@@ -208,10 +203,7 @@ class RegionSource:
             speed = norm(nodes.velocity) * self.field.speed_scale
             for name, values in {"speed": speed, **nodes.scalars}.items():
                 found.setdefault(name, []).append(np.where(nodes.valid, values, np.nan))
-        both = {}
-        for k, v in found.items():
-            both[k] = [ends_of(np.stack(v), robust=r) for r in (False, True)]
-        ranges = {name: ends for name, ends in both.items() if None not in ends}
+        ranges = _whole_and_robust({name: np.stack(steps) for name, steps in found.items()})
         if not ranges:
             raise FieldError("no node has data; check the selected variables")
         return ranges
@@ -238,11 +230,27 @@ def source_of(data: Any, **options: Any) -> NodeSource:
     return source.with_uncertainty(uncertainty)
 
 
+def _whole_and_robust(
+    values: Mapping[str, Floats],
+) -> dict[str, list[tuple[float, float] | None]]:
+    """Return the whole and the robust range of each scalar that has values."""
+    ranges = {}
+    for name, numbers in values.items():
+        ends = [ends_of(numbers, robust=False), ends_of(numbers, robust=True)]
+        if None not in ends:
+            ranges[name] = ends
+    return ranges
+
+
 def _source_of(data: Any, *, name: str = "", **given: Any) -> NodeSource:
+    """Return the nodes of data, of a large dataset region by region."""
     if isinstance(data, (FlowField, NodeSource)):
-        refused = {**given, "name": name or None, "uncertainty": None}
-        if names := [key for key, value in refused.items() if value is not None]:
-            raise FieldError(f"{', '.join(names)} applies to the data of a field; omit it")
+        refused = []
+        for key, value in {**given, "name": name or None}.items():
+            if value is not None and key != "uncertainty":
+                refused.append(key)
+        if refused:
+            raise FieldError(f"{', '.join(refused)} applies to the data of a field; omit it")
         if isinstance(data, NodeSource):
             return data
         return FieldSource(data)
@@ -297,8 +305,10 @@ def has_parts(place: object) -> bool:
         shapes = [array.shape for _, array in group.arrays()]
     except (OSError, ValueError, KeyError, TypeError):  # the reader reports the fault
         return False
-    large = any(len(shape) > 1 and math.prod(shape[-2:]) > WHOLE_NODES for shape in shapes)
-    return large or "multiscales" in group.attrs
+    for shape in shapes:
+        if len(shape) > 1 and math.prod(shape[-2:]) > WHOLE_NODES:
+            return True
+    return "multiscales" in group.attrs
 
 
 def datasets_at(place: str, options: FieldOptions) -> list[Any]:
@@ -358,4 +368,10 @@ def datasets_at(place: str, options: FieldOptions) -> list[Any]:
             f"{place} contains no pyramid, and no velocity; expected two variables such as u and "
             "v, or their names (on the web see zarr.consolidate_metadata)"
         )
-    return sorted(levels, key=lambda level: -max(array.size for array in level.values()))
+    return sorted(levels, key=_largest_array, reverse=True)
+
+
+def _largest_array(dataset: Any) -> int:
+    """Return the number of values of the largest variable."""
+    sizes = [int(array.size) for array in dataset.values()]
+    return max(sizes)

@@ -132,11 +132,10 @@ class StoredPyramid(Pyramid):
             nodes=(about["nodes"][0], about["nodes"][1]),
             depth=about["depth"],
         )
-        self.ranges = {
-            (name, robust): (ends[0], ends[1])
-            for name, both in (about.get("ranges") or {}).items()
-            for robust, ends in zip((False, True), both, strict=True)
-        }
+        self.ranges = {}
+        for name, (whole, robust) in (about.get("ranges") or {}).items():
+            self.ranges[name, False] = (whole[0], whole[1])
+            self.ranges[name, True] = (robust[0], robust[1])
 
     @cached_property
     def root(self) -> FlowField:
@@ -165,13 +164,15 @@ class StoredPyramid(Pyramid):
         field = textures.geometry.field
         drawn = textures.grid.drawn
         valid = field.valid[drawn]
-        first = [at * self.about["tile_cells"] for at in key[1:]]
-        above = [
-            np.arange(a // 2 + 1, (a + n) // 2) for a, n in zip(first, valid.shape, strict=True)
-        ]
+        above = []
+        lines = []
+        for number, count in zip(key[1:], valid.shape, strict=True):
+            first = number * self.about["tile_cells"]
+            coarse_lines = np.arange(first // 2 + 1, (first + count) // 2)
+            above.append(coarse_lines)
+            lines.append(2 * coarse_lines - first)
         if not all(map(len, above)):
             return
-        lines = [2 * line - a for line, a in zip(above, first, strict=True)]
         rows = lines[0] + np.array([[-1], [0], [1]])
         columns = lines[1] + np.array([[-1], [0], [1]])
         at = np.ix_(*lines)
@@ -179,7 +180,9 @@ class StoredPyramid(Pyramid):
         pairs = [(field.points[drawn][at], coarse.points), (valid[at], coarse.valid)]
         for name, values in coarse.scalars.items():
             fine = field.scalars[name]
-            pairs += [(fine[t][drawn][at], values[t]) for t in steps if t < len(values)]
+            for step in steps:
+                if step < len(values):
+                    pairs.append((fine[step][drawn][at], values[step]))
         for step in steps:
             velocity = stored.velocity(key.level + 1, step, *above)[coarse.valid]
             mean = averaged(np.asarray(field.velocity[step])[drawn], valid, rows, columns)
@@ -227,11 +230,9 @@ def _field_of_others(place: str, options: FieldOptions) -> FlowField:
     def nodes(dataset: Any) -> int:
         return math.prod(dataset.sizes[axis] for axis in axes)
 
-    fitting = [dataset for dataset in (finest, *coarser) if nodes(dataset) <= WHOLE_NODES]
-    if fitting:
-        drawn = fitting[0]
-    else:
-        drawn = [finest, *coarser][-1]
+    for drawn in (finest, *coarser):  # the last one if all are too large
+        if nodes(drawn) <= WHOLE_NODES:
+            break
     every = math.ceil(math.sqrt(nodes(drawn) / WHOLE_NODES))
     drawn = drawn.isel({axis: slice(None, None, every) for axis in axes})
     if nodes(drawn) < nodes(finest):

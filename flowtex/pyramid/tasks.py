@@ -86,7 +86,7 @@ def make_finest(source: NodeSource, place: str, run: str, part: Part) -> None:
 
 
 def compare_finest(source: NodeSource, place: str, run: str, part: Part) -> None:
-    """Check that a source still has the values of which a part of a pyramid was made.
+    """Check that a source still has the values from which a part of a pyramid was made.
 
     Parameters
     ----------
@@ -106,14 +106,13 @@ def compare_finest(source: NodeSource, place: str, run: str, part: Part) -> None
     """
     levels = _levels(place, run)
     nodes = _as_written(_source_nodes(levels, source, part))
-    if (
-        part_digest(nodes, levels.about, part.step)
-        != levels.whole(f"0/{DIGESTS}", part[1:]).tobytes()
-    ):
-        rows, columns = (f"{s.start}-{s.stop - 1}" for s in part.lines(source.shape))
+    stored_digest = levels.whole(f"0/{DIGESTS}", part[1:]).tobytes()
+    if part_digest(nodes, levels.about, part.step) != stored_digest:
+        rows, columns = part.lines(source.shape)
         raise ChangedError(
-            f"{place} contains the pyramid of another field, or of earlier values: rows {rows}, "
-            f"columns {columns} differ at step {part.step}. Build with fresh=True to replace it"
+            f"{place} contains the pyramid of another field, or of earlier values: rows "
+            f"{rows.start}-{rows.stop - 1}, columns {columns.start}-{columns.stop - 1} differ at "
+            f"step {part.step}. Build with fresh=True to replace it"
         )
 
 
@@ -141,13 +140,16 @@ def checks_of(
 
 
 def _objects(about: About, unit: Part | TileTask) -> Iterator[str]:
+    """Yield the names of the objects of a part or a tile."""
     if isinstance(unit, Part):
         level, step, row, column = unit
-        series = [f"scalars/{name}" for name, count in about["scalars"].items() if step < count]
         yield f"{level}/velocity/c/{step}/{row}/{column}/0"
-        yield from (f"{level}/{name}/c/{step}/{row}/{column}" for name in series)
+        for name, count in about["scalars"].items():
+            if step < count:
+                yield f"{level}/scalars/{name}/c/{step}/{row}/{column}"
         if step == 0:
-            yield from (f"{level}/{name}/c/{row}/{column}" for name in ("valid", "has_position"))
+            yield f"{level}/valid/c/{row}/{column}"
+            yield f"{level}/has_position/c/{row}/{column}"
             yield f"{level}/points/c/{row}/{column}/0"
         return
     (level, row, column) = unit.key
@@ -160,10 +162,13 @@ def _objects(about: About, unit: Part | TileTask) -> Iterator[str]:
 
 
 def _source_nodes(levels: Levels, source: NodeSource, part: Part) -> Nodes:
+    """Return the nodes of a part, read from the source."""
     lines = part.lines(source.shape)
     valid = None
     if part.step and source.travels:  # others have it in memory
-        valid = levels.valid(0, *(np.arange(span.start, span.stop) for span in lines))
+        rows = np.arange(lines[0].start, lines[0].stop)
+        columns = np.arange(lines[1].start, lines[1].stop)
+        valid = levels.valid(0, rows, columns)
     return source.nodes(part.step, *lines, valid)
 
 
@@ -176,8 +181,7 @@ def make_part(place: str, run: str, part: Part) -> None:
     levels = _levels(place, run)
     about = levels.about
     finer = part.level - 1
-    shape = [len(level_lines(n, part.level)) for n in about["nodes"]]
-    chosen = part.lines((shape[0], shape[1]))
+    chosen = part.lines(levels.shape(part.level))
     # As lines of the finer level: these, and those from which they are averaged.
     picks = []
     around = []
@@ -202,7 +206,7 @@ def make_part(place: str, run: str, part: Part) -> None:
 def write_part(
     array: Arrays, about: About, part: Part, lines: tuple[slice, slice], nodes: Nodes
 ) -> None:
-    """Write a part of a level; velocity (J, I, C) and scalars (J, I) are those of its step."""
+    """Write a part of a level, with the velocity (J, I, C) and scalars (J, I) of its step."""
     level = part.level
     components = about["components"]
     for name, values in nodes.scalars.items():
@@ -226,6 +230,7 @@ def make_tile(place: str, run: str, task: TileTask) -> None:
 
 
 def _at_step(levels: Levels, level: int, step: int, rows: Indices, columns: Indices) -> Nodes:
+    """Return nodes with the scalars of a step, without velocities."""
     nodes = levels.nodes(level, rows, columns, velocities=False)
     counts = levels.about["scalars"]
     scalars = {}
@@ -274,7 +279,8 @@ def write_tile(array: Arrays, pyramid: StoredPyramid, key: TileKey, steps: Seque
             for number, values in _values(pyramid, data, step).items():
                 file = {f"{prefix}/scalars/{step}/{number}": values}
                 _write(array, f"{key.level}/{VALUES}", (step, *at, number), fingerprint, file)
-            parts = {f"{prefix}/{name}": part for name, part in data.step(step).items()}
+            for name, part in data.step(step).items():
+                parts[f"{prefix}/{name}"] = part
             data.textures.forget()
         # The last file: its presence shows that a tile is complete.
         _write(array, f"{key.level}/{FLOW}", (step, *at), fingerprint, parts)
@@ -292,6 +298,7 @@ def _textures(pyramid: StoredPyramid, key: TileKey) -> TextureSet | None:
 
 
 def _write(array: Arrays, name: str, at: Sequence[int], fingerprint: str, parts: Parts) -> None:
+    """Write parts as a file of a tile, which names the pyramid that it belongs to."""
     owner = np.frombuffer(fingerprint.encode(), np.uint8)
     file = np.frombuffer(parts_file({"of": owner, **parts}, planes=True), np.uint8)
     size = -(-len(file) // FILE_CHUNK) * FILE_CHUNK
@@ -303,13 +310,14 @@ def _write(array: Arrays, name: str, at: Sequence[int], fingerprint: str, parts:
 
 
 def _surface(pyramid: StoredPyramid, key: TileKey, data: ClientData | None) -> Parts:
+    """Return the parts of the surface of a tile, with its own entries of the header."""
     parts = tile_parts(key, data)
     if data is not None:
         header = data.tile_header
-        shared = {
-            "geometry": header["geometry"],
-            "slices": {k: v for k, v in header["slices"].items() if k not in OF_ALL_TILES},
-        }
+        slices = dict(header["slices"])
+        for name in OF_ALL_TILES:
+            slices.pop(name, None)
+        shared = {"geometry": header["geometry"], "slices": slices}
         parts[next(iter(parts))] = np.frombuffer(json.dumps(shared).encode(), np.uint8)
     return parts
 
@@ -389,7 +397,8 @@ class Threads:
                 while running:
                     done, running = wait(running, return_when=FIRST_COMPLETED)
                     running |= {threads.submit(tried, task) for task in islice(left, len(done))}
-                    yield from [future.result() for future in done]
+                    for future in done:
+                        yield future.result()
             finally:
                 threads.shutdown(wait=True, cancel_futures=True)
 
@@ -459,6 +468,7 @@ def _set_allocator() -> None:
 
 
 def _packed(value: object) -> bytes | None:
+    """Return a pickled value for workers, ``None`` if it is too large to be sent."""
     try:
         data: bytes = import_extra("cloudpickle", "store").dumps(value)
     except Exception as error:

@@ -52,6 +52,9 @@ OPACITY = 0.8  #: How opaque a plate is.
 TICK_PX = 4  #: Length of ticks in pixels.
 BEYOND = 0.004  #: Share of the range by which a number may lie beyond an end: less than a pixel.
 LEGEND_WIDTH = 0.6  #: Widest legend with all of its values, as a share of the width of the picture.
+#: Names of plates; the structure stands beside the scale bar.
+SCALE_BAR = "scale bar"
+STRUCTURE = "structure"
 METRES_PER_KM = 1000
 SMOOTH = 4  #: Supersampling factor of the tips of a legend.
 
@@ -112,6 +115,13 @@ def annotate_views(
     return found
 
 
+def room_of(layouts: Sequence[Layout]) -> tuple[int, int]:
+    """Return the rows above and below the flow that views side by side need."""
+    above = max(layout.above for layout in layouts)
+    below = max(layout.below for layout in layouts)
+    return above, below
+
+
 def layout(
     scene: Scene,
     size: tuple[int, int],
@@ -124,52 +134,107 @@ def layout(
     beside: bool = False,
     flow_height: int | None = None,
 ) -> Layout:
-    """Return what is written on a picture, or ``beside`` the flow also of a large one.
+    """Return what is written on a picture.
 
-    ``size`` is the width and height of the picture in pixels, in which the flow has all rows or
-    ``flow_height``, and ``label`` is added to the name of the field in the title. Plates are light
-    on a light background. There is no legend for an image or a plain surface.
+    ``size`` is the width and height of the picture in pixels. The flow has ``flow_height`` rows of
+    it, by default all. ``label`` is added to the name of the field in the title. With ``beside``
+    nothing covers the flow, also in a large picture. Plates are light on a light background. There
+    is no legend for an image or a plain surface.
     """
-    width, height = size
     writer = _Writer(size, background, flow_height, small=beside)
-    title = _printable(", ".join(text for text in (scene.field.name, label) if text))
-    parts: tuple[tuple[str, bool, bool, Iterator[Image.Image]], ...] = (
-        ("legend", True, True, writer.legends(scene) if legend else iter(())),
-        ("time", True, False, writer.times(scene)),
-        ("scale bar", False, True, writer.scale_bars(scene, camera) if scale_bar else iter(())),
-        ("title", False, False, writer.texts(title)),
-        ("structure", False, True, writer.structure(scene) if legend else iter(())),
-    )
-    gap = writer.gap
-    small = writer.small
-    placed = list[Plate]()
-    left_out = list[str]()
-    strips = [0, 0]  # above and below the flow
-    for name, right, low, images in parts:
-        image = None
+    title = _printable(", ".join(filter(None, (scene.field.name, label))))
+    placement = _Placement(size, writer.gap, small=writer.small)
+    if legend:
+        placement.add("legend", writer.legends(scene), right=True, low=True)
+    placement.add("time", writer.times(scene), right=True)
+    if scale_bar:
+        placement.add(SCALE_BAR, writer.scale_bars(scene, camera), low=True)
+    placement.add("title", writer.texts(title))
+    if legend:
+        placement.add(STRUCTURE, writer.structure(scene), low=True)
+    return placement.layout
+
+
+class _Placement:
+    """The plates placed so far on a picture of a width and height in pixels."""
+
+    def __init__(self, size: tuple[int, int], gap: int, *, small: bool) -> None:
+        self._size = size
+        self._gap = gap
+        self._small = small
+        self._plates: list[Plate] = []
+        self._left_out: list[str] = []
+        self._strips = (0, 0)  # above and below the flow
+
+    @property
+    def layout(self) -> Layout:
+        """All plates, and the strips of a small picture."""
+        if self._small:
+            return Layout(self._plates, self._left_out, *self._strips)
+        return Layout(self._plates, self._left_out)
+
+    def add(
+        self, name: str, images: Iterator[Image.Image], *, right: bool = False, low: bool = False
+    ) -> None:
+        """Place the first image that fits into a corner, the upper left one by default."""
+        has_images = False
         for image in images:
-            left = width - gap - image.width if right else gap
-            top = height - gap - image.height if low else gap
-            if name == "structure":  # above the scale bar, or beside it
-                bars = [plate for plate in placed if plate.name == "scale bar"]
-                if small:
-                    left = max((plate.box[2] for plate in bars), default=0) + gap
-                else:
-                    top = min((plate.top for plate in bars), default=height) - gap - image.height
+            has_images = True
+            left, top = self._corner(image, right=right, low=low)
+            if name == STRUCTURE:
+                left, top = self._beside_scale_bar(image, left, top)
             plate = Plate(name, left, top, image)
-            fits = gap <= left <= width - gap - image.width
-            fits &= gap <= top <= height - gap - image.height
-            larger = [*strips]
-            larger[low] = max(strips[low], image.height + 2 * gap)
-            share = sum(larger) / height if small else image.width * image.height / width / height
-            fits &= share <= (MOST_STRIPS if small else MOST_COVER)
-            if fits and all(_apart(plate, other, gap) for other in placed):
-                placed.append(plate)
-                strips = larger
-                break
+            strips = self._strips_with(image, low=low)
+            if self._fits(plate, strips):
+                self._plates.append(plate)
+                self._strips = strips
+                return
+        if has_images:
+            self._left_out.append(name)
+
+    def _corner(self, image: Image.Image, *, right: bool, low: bool) -> tuple[int, int]:
+        """Return the place of an image in a corner, left and top."""
+        width, height = self._size
+        left = self._gap
+        top = self._gap
+        if right:
+            left = width - self._gap - image.width
+        if low:
+            top = height - self._gap - image.height
+        return left, top
+
+    def _beside_scale_bar(self, image: Image.Image, left: int, top: int) -> tuple[int, int]:
+        """Return the place of an image above the scale bar, or beside it in a small picture."""
+        for plate in self._plates:
+            if plate.name != SCALE_BAR:
+                continue
+            if self._small:
+                return plate.box[2] + self._gap, top
+            return left, plate.top - self._gap - image.height
+        return left, top
+
+    def _strips_with(self, image: Image.Image, *, low: bool) -> tuple[int, int]:
+        """Return the heights of the strips above and below the flow with another image."""
+        above, below = self._strips
+        needed = image.height + 2 * self._gap
+        if low:
+            return above, max(below, needed)
+        return max(above, needed), below
+
+    def _fits(self, plate: Plate, strips: tuple[int, int]) -> bool:
+        """Return whether a plate has room, covers little, and is apart from the others."""
+        width, height = self._size
+        gap = self._gap
+        image = plate.image
+        if not gap <= plate.left <= width - gap - image.width:
+            return False
+        if not gap <= plate.top <= height - gap - image.height:
+            return False
+        if self._small:
+            is_small_enough = sum(strips) / height <= MOST_STRIPS
         else:
-            left_out += [] if image is None else [name]
-    return Layout(placed, left_out, *(strips if small else (0, 0)))
+            is_small_enough = image.width * image.height / width / height <= MOST_COVER
+        return is_small_enough and all(_apart(plate, other, gap) for other in self._plates)
 
 
 def write_ticks(
@@ -250,9 +315,10 @@ class _Writer:
         field = scene.field
         if field.steady and field.start is None and not field.times[0]:
             return
-        times = (scene.time, *map(float, field.times[[0, -1]]))
-        text, *ends = (_printable(time_text(field, time)) for time in times)
-        yield from self.texts(text, tuple(ends))
+        text = _printable(time_text(field, scene.time))
+        first = _printable(time_text(field, float(field.times[0])))
+        last = _printable(time_text(field, float(field.times[-1])))
+        yield from self.texts(text, (first, last))
 
     def scale_bars(self, scene: Scene, camera: Camera) -> Iterator[Image.Image]:
         """Yield a scale bar of a round length, if the scale is the same in the whole picture."""
@@ -261,10 +327,13 @@ class _Writer:
             return
         if abs(float(np.cross(*frame) @ camera.axes[2])) < 1 - 1e-6:  # seen aslant
             return
-        scale, projection = 1.0, scene.field.projection  # lengths of the map for one of the Earth
+        scale = 1.0
+        projection = scene.field.projection
         if projection is not None:
+            # Lengths of the map for a length of the Earth; none outside the map.
             found = float(projection.scales(*projection.lonlat(np.asarray(camera.focal_point))))
-            scale = found if 0 < found < math.inf else 1.0  # outside the map
+            if 0 < found < math.inf:
+                scale = found
         unit_px = scale * self._flow_height / (2 * camera.height)
         length = round_length(SCALE_BAR_WIDTH * self._size[0] / unit_px)
         unit = _printable(scene.field.length_unit)
@@ -285,7 +354,7 @@ class _Writer:
         yield image
 
     def legends(self, scene: Scene) -> Iterator[Image.Image]:
-        """Yield a legend with round values, with every second of these, and with the outer ones."""
+        """Yield a legend with all round values, with every second one, and with the outer ones."""
         name = scene.scalar_name
         settings = scene.settings
         appearance = scene.appearance
@@ -316,31 +385,38 @@ class _Writer:
                 rows[kind] = _dot_marks(dot)
         if saddles:
             paths = structure.paths(step, saddles)
-        else:
-            paths = {}
-        lines_drawn = {name: color for name, color in LINE_COLORS.items() if paths.get(name)}
+            for name, color in LINE_COLORS.items():
+                if paths.get(name):
+                    rows[name] = [("━", color)]
         if settings.nullclines:
-            lines_drawn |= NULLCLINE_COLORS
-        rows |= {name: [("━", color)] for name, color in lines_drawn.items()}
+            for name, color in NULLCLINE_COLORS.items():
+                rows[name] = [("━", color)]
         rows |= self._ground(scene)
-        width = max(map(self._width, rows), default=0) + self._line
+        if not rows:
+            return
         if self.small:
             forms = (2, 3, len(rows))
         else:
             forms = (len(rows), 2, 1)
-        for lines in dict.fromkeys(min(form, len(rows)) for form in forms if rows):
-            wide = math.ceil(len(rows) / lines) * (width + self._line) - self._line
-            image, draw = self._blank(wide, lines * self._line)
-            for n, (name, marks) in enumerate(rows.items()):
-                x = (width + self._line) * (n // lines)
-                y = self._line * (n % lines)
-                self._write(draw, x + self._line, y, name)
-                left, top = self._pad + x + 0.4 * self._line, self._pad + y + self._line / 2
-                for rim, (mark, color) in zip((RIM_COLOR, MIDDLE_COLOR), marks, strict=False):
-                    stroke: Any = {"stroke_width": self._thin, "stroke_fill": rim}
-                    draw.text((left, top), mark, color, self.font, "mm", **stroke)
-                    top += self._thin / 2  # the middle of a large dot is lower
-            yield image
+        for lines in dict.fromkeys(np.minimum(forms, len(rows)).tolist()):
+            yield self._marks_legend(rows, lines)
+
+    def _marks_legend(self, rows: Mapping[str, Marks], lines: int) -> Image.Image:
+        """Return a legend of marks by their names, in columns of some lines."""
+        width = max(map(self._width, rows)) + self._line
+        wide = math.ceil(len(rows) / lines) * (width + self._line) - self._line
+        image, draw = self._blank(wide, lines * self._line)
+        for n, (name, marks) in enumerate(rows.items()):
+            x = (width + self._line) * (n // lines)
+            y = self._line * (n % lines)
+            self._write(draw, x + self._line, y, name)
+            left = self._pad + x + 0.4 * self._line
+            top = self._pad + y + self._line / 2
+            for rim, (mark, color) in zip((RIM_COLOR, MIDDLE_COLOR), marks, strict=False):
+                stroke: Any = {"stroke_width": self._thin, "stroke_fill": rim}
+                draw.text((left, top), mark, color, self.font, "mm", **stroke)
+                top += self._thin / 2  # the middle of a large dot is lower
+        return image
 
     def _ground(self, scene: Scene) -> dict[str, Marks]:
         """Return land and places without data, where they are drawn."""
@@ -378,7 +454,9 @@ class _Writer:
         stops = np.linspace(0, len(table) - 1, width).round().astype(int)
         ramp = np.broadcast_to(table[stops], (high, width, 3))
         shape = Image.new("L", (SMOOTH * width, SMOOTH * high))
-        left, right = (high * SMOOTH // 2 if tip else 0 for tip in beyond)
+        tip = high * SMOOTH // 2
+        left = tip * beyond[0]
+        right = tip * beyond[1]
         (x, y) = shape.size
         middle = SMOOTH * high / 2
         corners = [(0, middle), (left, 0), (x - right, 0), (x, middle), (x - right, y), (left, y)]
@@ -399,7 +477,10 @@ class _Writer:
         """Return a plate with room for a width and height, and the object that draws on it."""
         size = (width + 2 * self._pad, height + 2 * self._pad)
         image = Image.new("RGBA", size, self._plate)
-        image.putalpha(0 if self.small else round(255 * OPACITY))
+        if self.small:
+            image.putalpha(0)
+        else:
+            image.putalpha(round(255 * OPACITY))
         return image, ImageDraw.Draw(image)
 
     def _width(self, text: str) -> int:
@@ -431,7 +512,12 @@ def _dot_marks(mark: KindMark) -> Marks:
 
 def _printable(text: str) -> str:
     """Return a text in one line, without unprintable characters."""
-    return "".join(letter if letter.isprintable() else " " for letter in text).strip()
+    letters = []
+    for letter in text:
+        if not letter.isprintable():
+            letter = " "
+        letters.append(letter)
+    return "".join(letters).strip()
 
 
 def _apart(plate: Plate, other: Plate, gap: int) -> bool:
@@ -479,7 +565,11 @@ def _value_marks(scale: ColourScale, low: float, high: float) -> list[tuple[floa
 def difference_text(scene: Scene, changes: Mapping[str, Any]) -> str:
     """Return the settings by which one of two views differs from the other."""
     settings = dict(scene.settings) | {"lines": scene.lines}
-    return ", ".join(f"{name} = {settings[name]}" for name in changes if name in settings)
+    differences = []
+    for name in changes:
+        if name in settings:
+            differences.append(f"{name} = {settings[name]}")
+    return ", ".join(differences)
 
 
 def length_text(length: float, unit: str) -> str:
@@ -491,7 +581,9 @@ def length_text(length: float, unit: str) -> str:
         length = length / METRES_PER_KM
         unit = "km"
     plural = len(unit) > 4 and unit.endswith("s") and not unit.endswith(("ss", "ches"))
-    return f"{length:.12g} {unit[:-1] if plural and length == 1 else unit}".strip()
+    if plural and length == 1:
+        unit = unit.removesuffix("s")
+    return f"{length:.12g} {unit}".strip()
 
 
 def round_length(greatest: float) -> float:
@@ -499,4 +591,5 @@ def round_length(greatest: float) -> float:
     if not (greatest > 0 and math.isfinite(greatest)):
         return 0.0
     power = 10.0 ** math.floor(math.log10(greatest))
-    return max(step * power for step in (1, 2, 5) if step * power <= greatest * (1 + 1e-12))
+    steps = np.array([1.0, 2.0, 5.0]) * power
+    return float(steps[steps <= greatest * (1 + 1e-12)][-1])

@@ -57,7 +57,7 @@ def joins_arrays(first: int) -> Callable[[Function], Function]:
 
 
 def _joined(given: tuple[Any, ...], first: int) -> tuple[Any, ...]:
-    """Return arguments with several arrays from ``first`` on as one tuple."""
+    """Return positional arguments in which the arrays from number ``first`` on are one tuple."""
     stop = first
     while stop < len(given) and is_array(given[stop]):
         stop += 1

@@ -65,11 +65,19 @@ def share_field(field: FlowField) -> FlowField:
     arrays = []
     for name in sorted(FlowField.__dataclass_fields__.keys() - APART):
         value = getattr(field, name)
-        for key, part in value.items() if isinstance(value, Mapping) else [(name, value)]:
-            is_array = isinstance(part, np.ndarray)
-            arrays += [part] if is_array else []
-            # Lazy steps are identified by their object, which a field keeps alive.
-            words += [name, key, id(part) if isinstance(part, LazySteps) else is_array or part]
+        parts: Mapping[str, Any] = {name: value}
+        if isinstance(value, Mapping):
+            parts = value
+        for key, part in parts.items():
+            words += [name, key]
+            if isinstance(part, np.ndarray):
+                arrays.append(part)
+                words.append(True)
+            elif isinstance(part, LazySteps):
+                # Lazy steps are identified by their object, which a field keeps alive.
+                words.append(id(part))
+            else:
+                words.append(part)
     return _fields.get(digest(*arrays, words=words), lambda: field)
 
 
@@ -118,6 +126,7 @@ def read_field(mesh: Any, options: FieldOptions, time: float | str | None = None
 
 
 def _read(mesh: Any, options: FieldOptions, time: float | str | None) -> FlowField:
+    """Return the field of a mesh, a dataset, files or a store."""
     if (stored := _stored(mesh, options, time)) is not None:
         return stored
     choices = options.given
@@ -167,7 +176,9 @@ def _stored(place: Any, options: FieldOptions, time: float | str | None) -> Flow
         for name in options.given:
             if name != "uncertainty":
                 names.append(name)
-        if names := names if time is None else [*names, "time"]:
+        if time is not None:
+            names.append("time")
+        if names:
             raise FieldError(f"{', '.join(names)} applies to the source of a pyramid; omit it")
     options.refuse(OF_MESHES, "meshes, but this is a dataset")
     choices = options.given

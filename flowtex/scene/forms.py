@@ -24,6 +24,7 @@ from flowtex.settings import setting
 
 
 def _read_ends(text: str) -> str | tuple[float, ...]:
+    """Return the two ends of a range of colours, or the word for a robust one."""
     if text == ROBUST:
         return ROBUST
     low, high = numbers(2, expected="two numbers, such as 1.5,3")(text)
@@ -35,16 +36,32 @@ def _read_ends(text: str) -> str | tuple[float, ...]:
 def _read_differences(words: Sequence[str]) -> dict[str, Any]:
     """Read words such as ``lod=false`` as settings and as fields of :class:`Appearance`."""
     texts = named_texts(str, "name=value, such as --beside lod=false")(words)
-    named = {name.replace("-", "_"): text for name, text in texts.items()}
-    looks = Appearance.__dataclass_fields__
-    return {
-        name: FORMS[name].read(text) if name in looks else setting(name).parse(text)
-        for name, text in named.items()
-    }
+    values = {}
+    for flag, text in texts.items():
+        name = flag.replace("-", "_")
+        if name in Appearance.__dataclass_fields__:
+            values[name] = FORMS[name].read(text)
+        else:
+            values[name] = setting(name).parse(text)
+    return values
 
 
 #: Form of a whole number or a name.
-WHOLE = Form(read=lambda text: int(text) if text.isdecimal() else text)
+def _read_whole(text: str) -> int | str:
+    """Return a whole number; any other text as it is, for the check of its argument."""
+    if text.isdecimal():
+        return int(text)
+    return text
+
+
+def _read_mask(text: str) -> str | bool:
+    """Return the name of a mask, or ``False`` for none."""
+    if text.lower() in ("none", "false"):
+        return False
+    return text
+
+
+WHOLE = Form(read=_read_whole)
 _SPECIAL = {
     "block": WHOLE,
     "periodic": Form(read=or_none("")),
@@ -56,7 +73,7 @@ _SPECIAL = {
         read=named_texts(int, "an axis and a whole number, such as number=2"), repeated=True
     ),
     "max_edge": Form(read=number_or_text),
-    "mask": Form(read=lambda text: text if text.lower() not in ("none", "false") else False),
+    "mask": Form(read=_read_mask),
     "scalars": Form(read=or_none(value=False)),
     "component": WHOLE,
     "cmap": Form(
@@ -79,9 +96,10 @@ _SPECIAL = {
     "beside": Form(read=_read_differences, repeated=True),
 }
 #: Form of each argument that can be written as text.
-FORMS: dict[str, Form] = {
-    name: SWITCH if name in (*SWITCHES, *EARTH_LINES) else _SPECIAL.get(name, PLAIN)
-    for kind in (FieldOptions, Appearance, ViewOptions)
-    for name in kind.__dataclass_fields__
-    if name not in ("times", "slices")
-}
+FORMS: dict[str, Form] = {}
+for _kind in (FieldOptions, Appearance, ViewOptions):
+    for _name in _kind.__dataclass_fields__:
+        if _name in (*SWITCHES, *EARTH_LINES):
+            FORMS[_name] = SWITCH
+        elif _name not in ("times", "slices"):
+            FORMS[_name] = _SPECIAL.get(_name, PLAIN)

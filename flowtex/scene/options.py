@@ -154,10 +154,23 @@ class Appearance:
             object.__setattr__(self, "cmap", default_cmap(self.scalars))
         if not (is_number(self.opacity) and 0 <= self.opacity <= 1):
             faults.append(f"opacity is {brief(self.opacity)}; expected a number from 0 to 1")
-        clim = (-self.clim, self.clim) if is_number(self.clim) else self.clim  # as in PyVista
+        faults += self._check_range()
+        for name in (*SWITCHES, *EARTH_LINES):
+            if not isinstance(value := getattr(self, name), (bool, np.bool_, type(None))):
+                faults.append(f"{name} is {brief(value)}; expected True or False")
+        if self.land is False or (isinstance(self.land, str) and self.land == "none"):
+            object.__setattr__(self, "land", None)
+        raise_faults(faults + self._colour_faults())
+
+    def _check_range(self) -> list[str]:
+        """Replace ``clim`` by two numbers; return the faults of it and of the norm."""
+        faults = []
+        clim = self.clim
+        if is_number(clim):  # as in PyVista
+            clim = (-clim, clim)
         if clim is not None and not (isinstance(clim, str) and clim == ROBUST):
             try:
-                low, high = (float(value) for value in clim)
+                low, high = map(float, clim)
             except (TypeError, ValueError, OverflowError):
                 low = high = math.nan
             if not (low < high and math.isfinite(low + high)):
@@ -167,33 +180,45 @@ class Appearance:
                 )
             elif not (isinstance(self.clim, tuple) and self.clim == (low, high)):
                 object.__setattr__(self, "clim", (low, high))
-        if self.norm is not None and (self.clim is not None or self.log_scale):
+        if self.norm is None:
+            return faults
+        superfluous = None
+        if self.clim is not None:
+            superfluous = "clim"
+        elif self.log_scale:
+            superfluous = "log_scale"
+        if superfluous is not None:
             faults.append(
-                f"norm is {brief(self.norm)}, and {'clim' if self.clim else 'log_scale'} is given "
-                "too; omit it, and give the norm its limits, as in PowerNorm(0.5, 0, 10)"
+                f"norm is {brief(self.norm)}, and {superfluous} is given too; omit it, and give "
+                "the norm its limits, as in PowerNorm(0.5, 0, 10)"
             )
-        for name in (*SWITCHES, *EARTH_LINES):
-            if not isinstance(value := getattr(self, name), (bool, np.bool_, type(None))):
-                faults.append(f"{name} is {brief(value)}; expected True or False")
-        if self.land is False or (isinstance(self.land, str) and self.land == "none"):
-            object.__setattr__(self, "land", None)
+        return faults
+
+    def _colour_faults(self) -> list[str]:
+        """Return the faults of colours, and of what maps values to colours."""
         count = partial(checked_count, "n_colors", high=NORM_ENTRIES, expected=COUNT)
+        land = self.land
+        if land is None:
+            land = LAND_COLOR
         checks: tuple[tuple[Callable[[Any], Any], Any, Any], ...] = (
             (matplotlib_norm, self.norm, None),
             (count, self.n_colors, None),
             (colour_table, self.cmap, default_cmap(self.scalars)),
             (rgb, self.color, PLAIN_COLOR),
-            (rgb, LAND_COLOR if self.land is None else self.land, LAND_COLOR),
+            (rgb, land, LAND_COLOR),
             (rgb, self.nan_color, NO_VALUE_COLOR),
-            *((rgb, c, None) for c in (self.below_color, self.above_color)),
+            (rgb, self.below_color, None),
+            (rgb, self.above_color, None),
         )
+        faults = []
         for check, value, default in checks:
-            if value is not default:  # a default needs no check, and loads nothing
-                try:
-                    check(value)
-                except ValueError as error:
-                    faults.append(str(error))
-        raise_faults(faults)
+            if value is default:  # it needs no check, and loads nothing
+                continue
+            try:
+                check(value)
+            except ValueError as error:
+                faults.append(str(error))
+        return faults
 
     def changed(self, **changes: Any) -> Appearance:
         """Return another appearance; a colour map by default follows the scalars.
@@ -410,11 +435,13 @@ class Options:
         if is_array := "field" in accepted and (is_list or np.ndim(array) > 0):
             array = with_gaps("scalars", array)
             values["scalars"] = DATA
-        parts = {
-            name: kind(**{n: values.pop(n) for n in accepted.get(name, ()) if n in values})
-            for name, kind in _KINDS.items()
-        }
-        known = (*TABLE, *(name for names in accepted.values() for name in names))
+        parts: dict[str, Any] = {}
+        known = list(TABLE)
+        for kind_name, kind in _KINDS.items():
+            names = accepted.get(kind_name, ())
+            arguments = {name: values.pop(name) for name in names if name in values}
+            parts[kind_name] = kind(**arguments)
+            known += names
         for name in values:
             if name not in TABLE:
                 near = ""

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -228,8 +229,15 @@ class _Pixel:
         count = self._summing.count(recorder.face(self._base[:, :3]), certainty)
         cell = self._summing.cell(self._fragments.place, count)
         in_cell = cell is not None and cell.share[0] > 0
-        path_lags, path = (lags, points) if in_cell else self._path(sides, knots, lags)
-        moves = np.isfinite(sides[0].reach[0])
+        if in_cell:
+            path_lags = lags
+            path = points
+        else:
+            path_lags, path = self._path(sides, knots, lags)
+        step = np.nan
+        if np.isfinite(sides[0].reach[0]):  # it moves
+            step = float(sides[0].step(np.zeros(1))[0]) * self._unit
+        shown, share = _shown(value, faded)
         return Probe(
             field_values=self._field_values,
             lags=lags * self._unit,
@@ -239,9 +247,9 @@ class _Pixel:
             weights=recorder.weights[order],
             noise=recorder.noise[order],
             level=float(recorder.level[0]),
-            step=float(sides[0].step(np.zeros(1))[0]) * self._unit if moves else np.nan,
-            gain=recorder.gain * (float(faded[0]) if np.ndim(value) == 0 else 1.0),
-            value=float(value) if np.ndim(value) == 0 else np.asarray(value),
+            step=step,
+            gain=recorder.gain * share,
+            value=shown,
             path=path,
             path_lags=path_lags * self._unit,
         )
@@ -425,3 +433,10 @@ class LoadedTextures:
 
 
 _loaded: WeakCache[LoadedTextures] = WeakCache()
+
+
+def _shown(value: Any, faded: Floats) -> tuple[float | Floats, float]:
+    """Return a value of the texture, and its share of the contrast; colours have all of it."""
+    if np.ndim(value) == 0:
+        return float(value), float(faded[0])
+    return np.asarray(value), 1.0

@@ -112,9 +112,10 @@ class Scene:
         return make_scenes(mesh, Options.split("field", "appearance", **options))[0]
 
     def beside(self, changes: Mapping[str, Any], field: FlowField | None = None) -> Scene:
-        """Return a second scene of the same field, or of another one, that differs in changes.
+        """Return a second scene of the same field, or of another one, with some changes.
 
-        They are fields of :class:`Appearance` and settings; :func:`follow` updates the others.
+        ``changes`` are fields of :class:`Appearance` and settings. With :func:`follow`, later
+        changes of all others apply to both scenes.
 
         Raises
         ------
@@ -311,10 +312,16 @@ class Scene:
             store = self.store
             pyramid = self.pyramid
             # Textures keep their store alive, so its id is unique while they live.
-            textures = _textures.get(
-                (id(store), None if image is None else digest(image)),
-                lambda: pyramid.root_textures(store) if pyramid else TextureSet.build(store, image),
-            )
+            image_digest = None
+            if image is not None:
+                image_digest = digest(image)
+
+            def make() -> TextureSet:
+                if pyramid:
+                    return pyramid.root_textures(store)
+                return TextureSet.build(store, image)
+
+            textures = _textures.get((id(store), image_digest), make)
             if version == self._version:  # no other thread has changed a setting meanwhile
                 self._textures = textures
         return textures
@@ -333,6 +340,7 @@ class Scene:
         return as_picture(load_image(image))
 
     def _lay(self, picture: Floats32) -> None:
+        """Show an image, as texels, in place of the noise."""
         self.image = picture
         if self.settings.noise != "image":
             self.settings.noise = "image"
@@ -374,7 +382,7 @@ class Scene:
     def scalar(self, name: str, field: FlowField | None = None) -> Floats:
         """Values at the time that is shown, (J, I); :func:`steps_of` has the errors.
 
-        They are those of a part of the field, or of a coarser form of it, where one is given.
+        ``field`` may be a part of the scene's field, or a coarser form of it.
         """
         return at_moment(self.scalar_steps(name, field), self.moment)
 
@@ -383,6 +391,7 @@ class Scene:
         return steps_of(with_scalars(field or self.field, name), name)
 
     def _limits(self, appearance: Appearance) -> tuple[float, float]:
+        """Return the values at the ends of the colour map of an appearance."""
         name = appearance.scalar_name
         chosen = appearance.clim
         if isinstance(chosen, tuple):
@@ -552,16 +561,19 @@ class Scene:
         if keep_range and field.formula is None:
             kept = self._shown_ranges()
             if same_data:
-                known = field.volume_values
-                kept = {key: ends for key, ends in kept.items() if key[0] not in known}
+                for key in list(kept):
+                    if key[0] in field.volume_values:
+                        del kept[key]
             scene._kept = kept
         scene._show_time(min(max(self._time, scene._time), float(field.times[-1])))
         return scene
 
     def _shown_ranges(self) -> dict[tuple[str, bool], tuple[float, float]]:
         """Return the ranges that colours have had, by scalar and whether they are robust."""
-        ranges = {(name, robust): ends for (name, robust, _), ends in self._ranges.items()}
-        return {**ranges, **self._kept}
+        ranges = {}
+        for (name, robust, _), ends in self._ranges.items():
+            ranges[name, robust] = ends
+        return ranges | self._kept
 
     def follow(self, before: Scene) -> None:
         """Replace another scene, and notify its observers."""
@@ -580,6 +592,7 @@ class Scene:
         self._changed = Signal()
 
     def _setting_changed(self, name: str, value: Any) -> None:
+        """Check a setting that has changed, and forget what was made with the earlier one."""
         if name in STRUCTURE:
             try:
                 check_structure(self.field, self.settings)
@@ -656,7 +669,9 @@ def follow(
         scene = second()
         if not first()._kept:  # the colours of both fit the present data
             scene._kept = {}
-        names = [*own, "image", *(["clim"] if "scalars" in own else [])]
+        names = [*own, "image"]
+        if "scalars" in own:
+            names.append("clim")
         kept = {}
         for n, v in vars(scene.appearance).items():
             if n in names:
@@ -667,8 +682,14 @@ def follow(
         except ValueError:  # its values have no logarithm, unlike those of the first scene
             scene.appearance = replace(look, log_scale=False, norm=None, clim=None)
 
-    ends = first().settings.observe(follow_setting), first().observe(follow_look)
-    return lambda: [end() for end in ends].clear()
+    end_of_settings = first().settings.observe(follow_setting)
+    end_of_look = first().observe(follow_look)
+
+    def end() -> None:
+        end_of_settings()
+        end_of_look()
+
+    return end
 
 
 def lay_image(scenes: Sequence[Scene], image: Any, own: Collection[str]) -> None:

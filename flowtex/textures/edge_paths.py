@@ -1,7 +1,7 @@
 """Paths through nodes of sharp edges, which leave the face of their node at once.
 
-The mean of such a path and of that of a node inside the face leads along neither. So the path goes
-straight on in the face for as long as those of the neighbours stay in it.
+Between such a node and a node inside the face, the mean of both paths would lead along neither. So
+the path goes straight on in the face for as long as the paths of the neighbours stay in it.
 """
 
 from __future__ import annotations
@@ -50,7 +50,7 @@ class EdgePaths:
         Parameters
         ----------
         slopes
-            Slopes of all nodes in the textures; those of these nodes are changed in place.
+            Slopes of all nodes in the textures; at nodes of sharp edges they are changed in place.
         tangent
             Slopes at lag zero of all nodes.
         sines

@@ -41,9 +41,11 @@ class NodeDisplacements:
     ) -> None:
         # Relative to the middle and to the nodes, single precision is sufficient.
         self._map = CubicMap(surface, frame, surface.center, np.float32)
-        rows, columns = (np.arange(n)[part] for n, part in zip(surface.shape, nodes, strict=True))
+        rows = np.arange(surface.shape[0])[nodes[0]]
+        columns = np.arange(surface.shape[1])[nodes[1]]
         self._shape = len(rows), len(columns)
-        self._j, self._i = (a.ravel() for a in np.meshgrid(rows, columns, indexing="ij"))
+        self._j = np.repeat(rows, len(columns))
+        self._i = np.tile(columns, len(rows))
         self._points = self._map.nodes[:, self._j * surface.shape[1] + self._i]
         known = surface.has_position
         tangents = self._map.tangents[..., known.ravel()]
@@ -54,10 +56,10 @@ class NodeDisplacements:
         self._cells = known[1:, 1:] & known[1:, :-1] & known[:-1, 1:] & known[:-1, :-1]
         #: Twice the nodes without a position before each, in its row and in its column; one more
         #: at such a node.
-        if known.all():
-            self._unknown = []
-        else:
-            self._unknown = [2 * np.cumsum(~known, a) - ~known for a in (1, 0)]
+        self._unknown: list[Indices] = []
+        if not known.all():
+            for axis in (1, 0):
+                self._unknown.append(2 * np.cumsum(~known, axis) - ~known)
 
     def __call__(self, displacement: NDArray[np.floating], error: float = 0.0) -> Floats32:
         """Return displacements (C, J, I) of those (J, I, 2) in cells, up to an error."""
@@ -88,12 +90,9 @@ class NodeDisplacements:
         j = self._j
         i = self._i
         (by_row, by_column) = self._unknown
-        to_j, to_i = (
-            np.clip(at + np.trunc(along + np.copysign(1 - ROUNDING, along)), 0, count - 1)
-            for at, along, count in zip((j, i), (along_j, along_i), by_row.shape, strict=True)
-        )
-        to_j = to_j.astype(np.intp)
-        to_i = to_i.astype(np.intp)
+        rows, columns = by_row.shape
+        to_j = _displaced(j, along_j, rows)
+        to_i = _displaced(i, along_i, columns)
         apart = (by_row[j, i] != by_row[j, to_i]) | (by_column[j, i] != by_column[to_j, i])
         apart |= by_row[to_j, i] != by_row[to_j, to_i]
         apart |= by_column[j, to_i] != by_column[to_j, to_i]
@@ -142,7 +141,7 @@ class Padding:
     def of(cls, total: int, levels: int, *, periodic: bool, drawn: slice | None = None) -> Padding:
         """Pad to a multiple of the block of the coarsest level.
 
-        Nodes beside those that are ``drawn`` continue them as a period does.
+        The padding of ``drawn`` nodes are the nodes beside them, as along a periodic axis.
         """
         first, end, _ = (drawn or slice(None)).indices(total)
         block = 2**levels
@@ -321,10 +320,8 @@ class SurfaceGeometry(DrawnSurface):
         open_sides: tuple[tuple[bool, bool], ...],
     ) -> SurfaceGeometry:
         """Lay out some of a field's rows and columns, as a part of a larger surface."""
-        rows, columns = (
-            Padding.of(n, TILE_LEVELS, periodic=False, drawn=part)
-            for n, part in zip(field.shape, drawn, strict=True)
-        )
+        rows = Padding.of(field.shape[0], TILE_LEVELS, periodic=False, drawn=drawn[0])
+        columns = Padding.of(field.shape[1], TILE_LEVELS, periodic=False, drawn=drawn[1])
         return cls(field, TILE_LEVELS, rows, columns, whole, open_sides)
 
     @property
@@ -466,3 +463,9 @@ class SurfaceGeometry(DrawnSurface):
 
 def _is_small(lengths: Floats) -> Bools:
     return np.asarray(lengths <= 1e-9 * max(float(np.median(lengths)), 1e-300))
+
+
+def _displaced(numbers: Indices, along: Floats32, count: int) -> Indices:
+    """Return the last of ``count`` lines that a displacement from lines of nodes passes, (N,)."""
+    away = np.trunc(along + np.copysign(1 - ROUNDING, along))
+    return np.clip(numbers + away, 0, count - 1).astype(np.intp)

@@ -69,7 +69,7 @@ def as_picture(image: Any) -> Floats32:
     values = _fractions(array).reshape(*array.shape[:2], -1)
     channels = values.shape[-1]
     picture = np.ones((*values.shape[:2], 4), np.float32)
-    picture[..., :3] = values[..., :3] if channels > 1 else values
+    picture[..., :3] = values[..., :3]  # one channel is grey
     if channels == 4:
         picture[..., 3] = values[..., 3]
         picture[..., :3] *= picture[..., 3:]
@@ -171,8 +171,9 @@ def pixels_of(picture: Image) -> AnyArray:
         return np.asarray(picture).astype(np.uint16)
     if picture.mode == "F":
         return np.asarray(picture)
-    see_through = "A" in picture.getbands() or "transparency" in picture.info
-    return np.asarray(picture.convert("RGBA" if see_through else "RGB"))
+    if "A" in picture.getbands() or "transparency" in picture.info:
+        return np.asarray(picture.convert("RGBA"))
+    return np.asarray(picture.convert("RGB"))
 
 
 @dataclass(frozen=True, eq=False)
@@ -213,13 +214,13 @@ class ImageTextures:
 
     def by_cell(self) -> Floats:
         """Return derivatives of the image coordinates by index at the nodes, (J, I, 2)."""
-        slopes = [np.gradient(line) for line in (self.along_i, self.along_j)]
-        return np.stack(np.meshgrid(*slopes), axis=-1)
+        slopes = np.meshgrid(np.gradient(self.along_i), np.gradient(self.along_j))
+        return np.stack(slopes, axis=-1)
 
 
 def coordinates(field: FlowField, *, even: bool = True) -> tuple[Floats, Floats]:
     """Return the image coordinates of the lines of nodes, by mean length if ``even``."""
-    p_i, p_j = (np.linalg.norm(t, axis=-1) for t in field.surface.tangents)
+    p_i, p_j = np.linalg.norm(field.surface.tangents, axis=-1)
     lines = []
     for lengths in (p_i.mean(axis=0), p_j.mean(axis=1)):
         steps = (lengths[1:] + lengths[:-1]) / 2
@@ -234,14 +235,14 @@ def texel_places(
     field: FlowField, lines: tuple[Floats, Floats], size: int
 ) -> tuple[Floats, Floats]:
     """Return positions in index space and sizes in cells, (H, W, 2), of texels."""
-    tangents = (np.linalg.norm(t, axis=-1)[field.valid].mean() for t in field.surface.tangents)
-    lengths = [t * (n - 1) for t, n in zip(tangents, field.shape[::-1], strict=True)]
+    cell_lengths = np.linalg.norm(field.surface.tangents, axis=-1)[:, field.valid].mean(axis=1)
+    lengths = cell_lengths * np.subtract(field.shape[::-1], 1)
     shares = np.maximum(lengths / np.max(lengths), 1 / 8) * size
-    counts = [int(2 ** np.ceil(np.log2(max(n, 8)))) for n in shares]
-    middles = [
-        np.interp((np.arange(count) + 0.5) / count, line, np.arange(len(line)))
-        for line, count in zip(lines, counts, strict=True)
-    ]
+    counts = (2 ** np.ceil(np.log2(np.maximum(shares, 8)))).astype(int).tolist()
+    middles = []
+    for line, count in zip(lines, counts, strict=True):
+        texels = (np.arange(count) + 0.5) / count
+        middles.append(np.interp(texels, line, np.arange(len(line))))
     index = np.stack(np.meshgrid(*middles), axis=-1)
     cells = np.empty_like(index)
     for axis, (line, count) in enumerate(zip(lines, counts, strict=True)):
@@ -264,8 +265,8 @@ def steps_of(store: SliceStore, index: Floats, texel: Floats) -> Floats32:
         else:
             speed = np.zeros_like(speed)
     speed = speed * store.unit[..., None]
-    crossed = (
-        np.stack([between_nodes(speed[..., axis], index) for axis in range(2)], axis=-1) / texel
-    )
+    along_i = between_nodes(speed[..., 0], index)
+    along_j = between_nodes(speed[..., 1], index)
+    crossed = np.stack([along_i, along_j], axis=-1) / texel
     steps = 1 / np.maximum(crossed.max(axis=-1), 1 / float(store.lags[-1]))
     return np.asarray(np.minimum(steps, LONGEST_STEP), np.float32)

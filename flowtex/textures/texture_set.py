@@ -111,8 +111,9 @@ class TextureSet:
 
     def same_paths(self, other: TextureSet) -> bool:
         """Return whether only the image differs."""
-        steps = [None if t.image is None else t.image.step for t in (self, other)]
-        return self.geometry is other.geometry and steps[0] is steps[1] is not None
+        if self.geometry is not other.geometry or self.image is None or other.image is None:
+            return False
+        return self.image.step is other.image.step
 
     @property
     def grid(self) -> SurfaceGeometry:
@@ -176,12 +177,16 @@ class TextureSet:
         return _critical_cells[field]
 
     def _critical_cell(self, field: FlowField) -> float:
+        """Return the size of the largest cell in which the flow has different directions."""
         corners = field.surface.cell_corners
         cells = field.surface.cells
         lengths = field.surface.cell_lengths
         # Paths go over sharp edges out of the plane of a triangle, and follow it from farther away.
         at_edge = field.surface.at_edge
-        edge = np.logical_or.reduce([at_edge[at] for at in corners]) & cells
+        edge = np.zeros_like(cells)
+        for corner in corners:
+            edge |= at_edge[corner]
+        edge &= cells
         longest = EDGE_CELLS * float(lengths[edge].max(initial=0.0))
         if not field.steady:
             return max(float(lengths[cells].max(initial=0.0)), longest)
@@ -221,6 +226,7 @@ class TextureSet:
         return result
 
     def _nodal(self, slices: TraceSlices, tangent: AnyArray, layer: int) -> Floats32:
+        """Return a layer of the texture at the nodes, (J, I, 4)."""
         result = np.zeros((*slices.shape, 4), np.float32)
         if layer == 0:
             result[..., :3] = tangent
@@ -231,24 +237,19 @@ class TextureSet:
             self._mark_edges(slices, tangent, result[..., 2])
             # Tangents by arc length do not contain the speed.
             timed = self.store.parameter == "time"
-            result[..., 3] = 1.0 if timed else np.maximum(self._speed(slices), 0.0)
+            result[..., 3] = 1.0
+            if not timed:
+                result[..., 3] = np.maximum(self._speed(slices), 0.0)
             return result
         side, m = divmod(layer - 1, len(slices.lags))
         sign = -1.0
         displacement = slices.displacement
         reach = slices.reach
         if side and slices.forward is not None and slices.forward_reach is not None:
-            sign, displacement, reach = 1.0, slices.forward, slices.forward_reach
-        scale = sign / float(slices.lags[m])
-        if self.image is not None:
-            moved = self.image.at(slices.nodes + displacement[0, m]) - self.image.coordinate
-            result[..., :2] = moved * scale
-        else:
-            by_length = np.float32(scale) / self._length[..., 0]
-            least = float(np.min(self.store.unit[self.geometry.field.valid]))
-            error = SLOPE_ERROR * float(slices.lags[m]) * least * self.pace
-            for channel, moved in enumerate(self._displacements(displacement[0, m], error)):
-                np.multiply(moved, by_length, out=result[..., channel])
+            sign = 1.0
+            displacement = slices.forward
+            reach = slices.forward_reach
+        self._write_tangents(displacement[0, m], sign, float(slices.lags[m]), slices.nodes, result)
         self._straighten(slices, tangent, (side, m), result[..., :3])
         if m == 0:
             # Nodes at rest leave the reach to their neighbours.
@@ -260,6 +261,21 @@ class TextureSet:
         if m + 1 == UNCERTAIN_LAYER and (field := self.geometry.field).uncertainty:
             result[..., 3] = unknown_share(field, self._step(slices))[self.geometry.texels]
         return result
+
+    def _write_tangents(
+        self, displacement: AnyArray, sign: float, lag: float, nodes: AnyArray, result: AnyArray
+    ) -> None:
+        """Write displacements, in cells, as mean tangents by lag, in the image or in space."""
+        scale = sign / lag
+        if self.image is not None:
+            moved = self.image.at(nodes + displacement) - self.image.coordinate
+            result[..., :2] = moved * scale
+            return
+        by_length = np.float32(scale) / self._length[..., 0]
+        least = float(np.min(self.store.unit[self.geometry.field.valid]))
+        error = SLOPE_ERROR * lag * least * self.pace
+        for channel, moved in enumerate(self._displacements(displacement, error)):
+            np.multiply(moved, by_length, out=result[..., channel])
 
     def _straighten(
         self, slices: TraceSlices, tangent: AnyArray, number: tuple[int, int], slopes: AnyArray
@@ -329,7 +345,9 @@ class TextureSet:
     def _displacements(self) -> Callable[[AnyArray, float], AnyArray]:
         """Map of displacements to the surface's frame; a flat one has no third component."""
         geometry = self.geometry
-        return geometry.displacements(geometry.frame[:2] if geometry.planar else geometry.frame)
+        if geometry.planar:
+            return geometry.displacements(geometry.frame[:2])
+        return geometry.displacements(geometry.frame)
 
     @cached_property
     def _length(self) -> Floats32:

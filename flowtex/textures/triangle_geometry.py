@@ -113,7 +113,9 @@ class TriangleGeometry(DrawnSurface):
 
     def drawn_values(self, values: AnyArray, *, on_cells: bool) -> AnyArray:
         """Return the values of a scalar at the drawn nodes (..., 1, n) or triangles (..., 1, m)."""
-        return values[..., self.members if on_cells else self.nodes]
+        if on_cells:
+            return values[..., self.members]
+        return values[..., self.nodes]
 
     def at_vertices(self, nodal: AnyArray, *, on_cells: bool = False) -> AnyArray:
         """Return values at the vertices, (3 m, ...), from drawn nodes or triangles, (1, n, ...)."""

@@ -126,11 +126,11 @@ def compose(
 ) -> None:
     """Fill the long slices of one direction in place.
 
-    The slices of the first ``direct`` of all lags (M,) are filled, and ``reach`` is infinite for
-    paths that did not end within these. ``landing`` comes from :func:`landings`, ``run`` maps a
-    function over blocks of paths, and ``integrate`` follows paths close to a pole, of which more
-    are marked. Direction -1 is backward, 1 forward. Paths end, and stay there, with the first slice
-    whose lag, times the unit, is ``longest`` or more, one number or one for each node.
+    The slices of the first ``direct`` of all lags (M,) are filled already, and ``reach`` is
+    infinite for paths that did not end within these lags. ``landing`` comes from :func:`landings`,
+    ``run`` maps a function over blocks of paths, and ``integrate`` follows paths close to a pole,
+    which are then marked as polar. Direction -1 is backward, 1 forward. Paths end, and stay, at the
+    first slice whose lag, times the unit, is ``longest`` or more: one number, or one for each node.
     """
     counts = np.maximum(np.searchsorted(lags, longest / unit) + 1, direct)
     lookup = _SliceLookup(field, lags, unit, side, landing * int(direction), counts)
@@ -141,8 +141,14 @@ def compose(
     for m in range(1, len(lags) + 1):
         if m > direct:
             _Doubling(lookup, m, beside).run(run)
-        if m < len(lags):
-            lookup.judge(m, np.inf if m <= direct else ROUGH if m == direct + 1 else 1)
+        if m == len(lags):
+            break
+        if m <= direct:
+            lookup.judge(m, np.inf)
+        elif m == direct + 1:
+            lookup.judge(m, ROUGH)
+        else:
+            lookup.judge(m, 1)
     ends = np.where(counts < len(lags), lookup.knots[np.minimum(counts, len(lags))], np.inf)
     np.minimum(side.reach, ends, out=side.reach)
 
@@ -266,7 +272,8 @@ class _SliceLookup:
         span: AnyArray = lag / self._unit_in(corners)
         m = self._below(span * (1 - 2 * LAG_ROUNDING))
         late = (span - self.knots[m]) / (self.knots[m + 1] - self.knots[m])
-        before, after = (self._blend(corners, base, k) * self._inverse[k] for k in (m, m + 1))
+        before = self._blend(corners, base, m) * self._inverse[m]
+        after = self._blend(corners, base, m + 1) * self._inverse[m + 1]
         moved = np.asarray((before + late * (after - before)) * span)
         self._mirror(moved, position)
         return moved
@@ -291,8 +298,13 @@ class _SliceLookup:
     def _mirror(self, moved: Complexes, position: Floats32) -> None:
         """Turn displacements from positions beyond a pole to run as index space does there."""
         poles = self.grid.poles
-        if poles is not None:
-            (moved.imag if poles.component else moved.real)[poles.mirrored(position)] *= -1
+        if poles is None:
+            return
+        if poles.component:
+            component = moved.imag
+        else:
+            component = moved.real
+        component[poles.mirrored(position)] *= -1
 
     def _below(self, lag: Floats32) -> Indices:
         """Return the number of the longest slice up to each lag; comparing beats a search."""
@@ -338,11 +350,15 @@ class _Doubling:
 
     def run(self, run: Map) -> None:
         """Follow all paths to their end, piece by piece."""
-        count = len(self._left)
-        blocks: list[Selection] = [slice(k, min(k + BLOCK, count)) for k in range(0, count, BLOCK)]
+        blocks: list[Selection]
         if self._which is not None:
             blocks = _parts(self._which)
-        for number in range(2 * MOST_PIECES if blocks else 0):
+        else:
+            count = len(self._left)
+            blocks = [slice(first, min(first + BLOCK, count)) for first in range(0, count, BLOCK)]
+        for number in range(2 * MOST_PIECES):
+            if not blocks:
+                break
             check()
             if number >= MOST_PIECES:
                 longest = self._before
@@ -502,7 +518,8 @@ def _bend(grid: Floats32, axis: int) -> Floats32:
     """Return second differences of (T, J, I, 2) along an axis, repeated at the borders."""
     if grid.shape[axis] < 3:
         return np.zeros_like(grid)
-    width = [(int(a == axis),) * 2 for a in range(grid.ndim)]
+    width = [(0, 0)] * grid.ndim
+    width[axis] = (1, 1)
     return np.pad(np.diff(grid, 2, axis=axis), width, mode="edge")
 
 

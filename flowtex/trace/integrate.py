@@ -13,7 +13,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Self
+from typing import Any, Self
 
 import numpy as np
 
@@ -86,8 +86,12 @@ class Columns:
 
     def joined(self, other: Self) -> Self:
         """Return these particles and others."""
-        pairs = zip(vars(self).values(), vars(other).values(), strict=True)
-        parts = (None if a is None else np.concatenate([a, b], axis=-1) for a, b in pairs)
+        parts: list[Any] = []
+        for own, others in zip(vars(self).values(), vars(other).values(), strict=True):
+            if own is None:
+                parts.append(None)
+            else:
+                parts.append(np.concatenate([own, others], axis=-1))
         return type(self)(*parts)
 
     def pick(self, mask: Bools | Indices) -> Self:
@@ -96,8 +100,13 @@ class Columns:
         at = mask
         if mask.dtype == bool:
             at = np.flatnonzero(mask)
-        parts = vars(self).values()
-        return type(self)(*(None if part is None else part.take(at, axis=-1) for part in parts))
+        parts: list[Any] = []
+        for part in vars(self).values():
+            if part is None:
+                parts.append(None)
+            else:
+                parts.append(part.take(at, axis=-1))
+        return type(self)(*parts)
 
 
 @dataclass
@@ -150,11 +159,15 @@ class _Run:
         within: Callable[[Floats], Bools] | None = None,
     ) -> None:
         count = start.shape[1]
-        self.sampler, self.direction, self.tolerance = sampler, direction, tolerance
+        self.sampler = sampler
+        self.direction = direction
+        self.tolerance = tolerance
         self.charts = sampler.charts
         self.within = within
         #: Lag to the first or last time step, beyond which the flow is constant.
-        self.span = direction * (sampler.times[0 if direction < 0 else -1] - sampler.destination)
+        self.span = sampler.times[-1] - sampler.destination
+        if direction < 0:
+            self.span = sampler.destination - sampler.times[0]
         self.lags = lags
         self.before = np.full(start.shape, np.inf)
         #: The lags and one that is never reached, for particles that have passed all.
@@ -162,23 +175,32 @@ class _Run:
         self.out = np.repeat(start[None], len(lags), axis=0)
         self.reach = np.full(count, np.inf)
         self.polar, self.interrupted = np.zeros((2, count), dtype=bool)
-        last = float(lags[-1])
-        chart, y = None, start
+        if self.charts is not None:
+            self.polar |= self.charts.close(start)
+        self.state = self._first_state(start, unit)
+
+    def _first_state(self, start: Floats, unit: Floats) -> _Particles:
+        """Return particles that begin at positions (2, N) in index space."""
+        count = start.shape[1]
+        last = float(self.lags[-1])
+        chart = None
+        index = None
+        y = start
         if self.charts is not None:
             chart = self.charts.choose(start)
+            index = start
             y = self.charts.enter(start, chart)
-            self.polar |= self.charts.close(start)
-        self.state = _Particles(
+        return _Particles(
             which=np.arange(count),
             unit=unit,
-            rest=sampler.rest(unit, last),
+            rest=self.sampler.rest(unit, last),
             y=y,
             lag=np.zeros(count),
             step=last * unit,
-            rate=sampler.rate(y, np.zeros(count), direction, chart),
+            rate=self.sampler.rate(y, np.zeros(count), self.direction, chart),
             next=np.zeros(count, dtype=np.intp),
             chart=chart,
-            index=None if chart is None else start,
+            index=index,
         )
 
     def end_resting(self) -> None:

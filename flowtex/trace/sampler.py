@@ -68,7 +68,7 @@ class Sampler:
         else:
             self.longest = float(np.diff(field.times).max())
         data = fill_blanked(data, field.valid, data.ndim - 3)
-        parts = [np.ascontiguousarray(data[..., c]).ravel() for c in range(data.shape[-1])]
+        parts = [component.ravel() for component in np.moveaxis(data, -1, 0)]
         grid = NodeGrid.of(field)
         self._poles = poles = field.surface.poles
         #: The charts of a surface that has poles.
@@ -85,8 +85,10 @@ class Sampler:
         #: The metric at the nodes of a sign-free field, by ``METRIC``.
         self._metric: list[Floats] = []
         if field.sign_free:
-            p = field.surface.tangents
-            self._metric = [np.sum(p[a] * p[b], axis=-1).ravel() for a, b in METRIC]
+            tangents = field.surface.tangents
+            for first, second in METRIC:
+                products = np.sum(tangents[first] * tangents[second], axis=-1)
+                self._metric.append(products.ravel())
             flat, *caps = self._patches
             flat = flat.without_sign(fill_blanked(field.velocity[0], field.valid))
             self._patches = [flat, *(patch.without_sign() for patch in caps)]
@@ -160,7 +162,9 @@ class Sampler:
         """
         if self._floor:
             return RESTING_CELLS / unit
-        return np.full(len(unit), 0.0 if len(self.times) > 1 else STILL_CELLS) / (unit * last)
+        if len(self.times) > 1:
+            return np.zeros(len(unit))
+        return STILL_CELLS / (unit * last)
 
     def _rate(self, patch: Patch, position: Floats, lag: Floats, direction: float) -> Floats:
         """Return the rate on one chart, forward, at time destination + direction * lag."""
@@ -198,10 +202,12 @@ class Patch(NamedTuple):
     def without_sign(self, vectors: Floats | None = None) -> Patch:
         """Return the patch for sign-free data, by default for the vectors (J, I, C) of itself."""
         if vectors is None:
-            parts = [a.reshape(self.grid.rows, self.grid.columns) for a in self.data[:2]]
-            vectors = np.stack(parts, axis=-1)
+            shape = (self.grid.rows, self.grid.columns, 2)
+            vectors = np.stack(self.data[:2], axis=-1).reshape(shape)
         signs = corner_signs(vectors)
-        return self._replace(signs=None if signs is None else signs.reshape(4, -1))
+        if signs is None:
+            return self._replace(signs=None)
+        return self._replace(signs=signs.reshape(4, -1))
 
     def corners(self, position: Floats) -> Corners:
         """Return cells of positions (2, N) of the chart."""
@@ -264,8 +270,10 @@ class Charts:
     def close(self, index: Floats) -> Bools:
         """Return whether positions (2, N) in index space are close to a pole, (N,)."""
         index = self._poles.fold(index)
-        close = [pole.depth(index) < min(CLOSE_CELLS, self.near) for pole in self._poles]
-        return np.asarray(np.any(close, axis=0))
+        close = np.zeros(index.shape[1], bool)
+        for pole in self._poles:
+            close |= pole.depth(index) < min(CLOSE_CELLS, self.near)
+        return close
 
     def enter(self, index: Floats, chart: Numbers) -> Floats:
         """Return coordinates (2, N) on charts (N,) of positions (2, N) in index space."""
@@ -303,14 +311,20 @@ def cap(pole: Pole, grid: NodeGrid, data: list[Floats], near: int) -> Patch:
     The data are components along i and j, in cells, and other values, (sets * J * I,) each.
     """
     shape = (-1, grid.rows, grid.columns)
-    lines = (grid.rows if pole.component else grid.columns) - 1
-    depth = min(near + LEAVE_CELLS + SPARE_CELLS, lines)
+    if pole.component:
+        lines = grid.rows
+    else:
+        lines = grid.columns
+    depth = min(near + LEAVE_CELLS + SPARE_CELLS, lines - 1)
     if pole.inward > 0:
         first = pole.line
     else:
         first = pole.line - depth
     # The second axis counts the lines around the pole.
-    strips = [pole.lines(a.reshape(shape), 1)[:, first : first + depth + 1] for a in data]
+    strips = []
+    for values in data:
+        lines_of_values = pole.lines(values.reshape(shape), 1)
+        strips.append(lines_of_values[:, first : first + depth + 1])
     strips[:2] = _to_plane(pole, strips[1 - pole.component], strips[pole.component])
     strips = [pole.lines(a, 1) for a in strips]
     rows, columns = strips[0].shape[1:]
@@ -388,10 +402,10 @@ class NodeGrid:
     @cached_property
     def endless(self) -> bool:
         """Whether no path can leave the domain: there are neither borders nor blanked cells."""
-        borders = {axis for axis, closed in enumerate(self.periodic) if not closed}
+        closed = list(self.periodic)
         if self.poles is not None and self.poles.both:
-            borders -= {1 - self.poles.component}
-        return self.open is None and not borders
+            closed[1 - self.poles.component] = True
+        return self.open is None and all(closed)
 
     def corners(self, position: AnyArray) -> Corners:
         """Return the cells of positions (2, N); those beyond a border are moved onto it."""
@@ -413,8 +427,12 @@ class NodeGrid:
         around = MOST_ROOM_CELLS
         cells = self.open.reshape(self.rows, self.columns)[:-1, :-1]
         for axis, closed in enumerate(self.periodic):
-            width = [(around * (a == axis),) * 2 for a in range(2)]
-            cells = np.pad(cells, width, mode="wrap" if closed else "edge")
+            width = [(0, 0), (0, 0)]
+            width[axis] = (around, around)
+            if closed:
+                cells = np.pad(cells, width, mode="wrap")
+            else:
+                cells = np.pad(cells, width, mode="edge")
         far = scipy.ndimage.distance_transform_cdt(cells, "chessboard")[
             around:-around, around:-around
         ]

@@ -8,6 +8,7 @@ the length of a streak does with every level of detail.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
@@ -160,17 +161,26 @@ class TraceSlices:
     @property
     def nbytes(self) -> int:
         """Size of the arrays in bytes."""
-        arrays = (getattr(self, name) for name in self.__dataclass_fields__)
-        return sum(a.nbytes for a in arrays if isinstance(a, np.ndarray))
+        nbytes = 0
+        for name in self.__dataclass_fields__:
+            value = getattr(self, name)
+            if isinstance(value, np.ndarray):
+                nbytes += value.nbytes
+        return nbytes
 
     def at_step(self, step: int) -> TraceSlices:
         """Return the slices of one destination time, with T = 1."""
         span = slice(step, step + 1 or None)
-        slices = self.mapped(lambda data, axis: data[span] if axis else data)
+
+        def at_span(data: AnyArray, axis: int) -> AnyArray:
+            if axis:  # the first axis is time
+                return data[span]
+            return data
+
         origin = self.origin
         if origin is not None:
             origin = replace(origin, velocities=origin.velocities[span])
-        return replace(slices, times=self.times[span], origin=origin)
+        return replace(self.mapped(at_span), times=self.times[span], origin=origin)
 
     def part(self, rows: slice, columns: slice | Indices) -> TraceSlices:
         """Return some rows and columns of the slices."""
@@ -179,11 +189,11 @@ class TraceSlices:
 
     def mapped(self, function: Callable[[AnyArray, int], AnyArray]) -> TraceSlices:
         """Apply a function to each array over the nodes, and to its axis of j."""
-        arrays: dict[str, Any] = {
-            name: function(data, axis)
-            for name, axis in NODE_AXES.items()
-            if (data := getattr(self, name)) is not None
-        }
+        arrays: dict[str, Any] = {}
+        for name, axis in NODE_AXES.items():
+            data = getattr(self, name)
+            if data is not None:
+                arrays[name] = function(data, axis)
         return replace(self, **arrays)
 
     def positions(self, lag: float, *, step: int = 0, forward: bool = False) -> Floats:
@@ -386,8 +396,10 @@ def lag_unit(field: FlowField, parameter: str) -> Floats:
 def longest_path(field: FlowField) -> float:
     """Return the default length of the paths; a globe is as wide as a side of its bounding box."""
     poles = field.surface.poles
-    closed = poles is not None and poles.both
-    return LAST_EXTENTS * field.surface.extent / (np.sqrt(3) if closed else 1)
+    length = LAST_EXTENTS * float(field.surface.extent)
+    if poles is not None and poles.both:
+        return length / math.sqrt(3)
+    return length
 
 
 def choose_lags(

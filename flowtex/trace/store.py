@@ -94,7 +94,10 @@ class SliceStore:
     @property
     def nbytes(self) -> int:
         """Bytes of the slices in memory."""
-        return self._cache.nbytes + (0 if self._whole is None else self._whole.nbytes)
+        nbytes = self._cache.nbytes
+        if self._whole is not None:
+            nbytes += self._whole.nbytes
+        return nbytes
 
     @property
     def two_sided(self) -> bool:
@@ -110,6 +113,7 @@ class SliceStore:
         self._cache.clear()
 
     def _trace(self, step: int) -> TraceSlices:
+        """Return the slices of a time step, traced along its lines."""
         if self._whole is not None:
             return self._whole.at_step(step)
         if self.streamlines:
@@ -141,6 +145,7 @@ class SliceStore:
         return self._trace_with(self.field, steps=[step])
 
     def _trace_with(self, field: FlowField, **options: Any) -> TraceSlices:
+        """Return slices with the lags of the store; those of a whole surface are shared."""
         # A part of a surface is one of many, so it has no progress bar.
         alone = self._nodes is None
         arguments = {**options, "nodes": self._nodes, "longest": self.long_enough}
@@ -151,10 +156,13 @@ class SliceStore:
 
     def _key(self, field: FlowField, options: dict[str, Any]) -> bytes:
         """Return a hash of all numbers that determine the slices of a field."""
-        arrays = (field.points, field.valid, *field.velocity, field.times, self.lags, self.unit)
-        optional = (part for part in (field.has_position, field.triangles) if part is not None)
+        arrays = [field.points, field.valid, *field.velocity, field.times, self.lags, self.unit]
+        if field.has_position is not None:
+            arrays.append(field.has_position)
+        if field.triangles is not None:
+            arrays.append(field.triangles)
         choices = (field.periodic, field.sign_free, field.has_position is None, self.long_enough)
-        return digest(*arrays, *optional, words=(choices, *sorted(options.items())))
+        return digest(*arrays, words=(choices, *sorted(options.items())))
 
 
 def check_slices(field: FlowField, slices: TraceSlices) -> None:
@@ -219,8 +227,9 @@ def changing_share(field: FlowField) -> float:
 def judged_lines(shape: tuple[int, int]) -> tuple[Indices, Indices]:
     """Return the rows and columns at which a field with nodes (J, I) is sampled."""
     rows, columns = shape
-    # Nodes of triangles are one row.
-    return _sample(rows, MOST_JUDGED), _sample(columns, MOST_JUDGED if rows > 1 else MOST_JUDGED**2)
+    if rows == 1:  # the nodes of triangles
+        return _sample(rows, MOST_JUDGED), _sample(columns, MOST_JUDGED**2)
+    return _sample(rows, MOST_JUDGED), _sample(columns, MOST_JUDGED)
 
 
 def _sample(count: int, most: int) -> Indices:

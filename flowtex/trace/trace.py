@@ -6,6 +6,7 @@ time in threads: NumPy releases the interpreter's lock inside its loops.
 
 from __future__ import annotations
 
+import itertools
 import os
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
@@ -48,6 +49,8 @@ BLOCK = 65536
 MOST_THREADS = 8  #: Most threads.
 #: Length in cells up to which the paths of a steady field are integrated, not composed.
 DIRECT_CELLS = 1.0
+FORWARD = 1.0  #: Direction in which particles move.
+BACKWARD = -1.0  #: Direction from which particles came.
 
 
 def trace(
@@ -129,74 +132,42 @@ def trace(
     """
     check_field(field, FlowField)
     parameter = _parameter(field, parameter)
-    if field.sign_free and not two_sided:
-        raise FieldError(
-            "two_sided is False; expected True, because a sign-free field has two equal sides"
-        )
-    if field.sign_free and compose:
-        raise FieldError(
-            "compose is True; expected False or None, because paths of a sign-free field cannot "
-            "be composed between nodes of opposite sign"
-        )
-    lag_values = choose_lags(field, parameter) if lags is None else _checked_lags(lags)
-    units = lag_unit(field, parameter)
-    if unit is not None:
-        expected = f"a number, or one for each node, of shape {field.shape}"
-        units = checked_array("unit", unit, expected=expected)
-        if units.shape not in ((), field.shape):
-            raise FieldError(f"unit has shape {units.shape}; expected {expected}")
-        units = np.array(np.broadcast_to(units, field.shape))
-    if not (np.isfinite(units).all() and (units > 0).all()):
-        raise FieldError(
-            f"unit has values from {units.min():g} to {units.max():g}; expected positive numbers"
-        )
-    if not LEAST_LAG <= lag_values[0] <= lag_values[-1] <= MOST_LAG:
-        raise FieldError(
-            f"lags range from {lag_values[0]:g} to {lag_values[-1]:g}; expected {LEAST_LAG:g} to "
-            f"{MOST_LAG:g}, because of single precision: choose a unit of their size"
-        )
+    if field.sign_free:
+        _check_sign_free(two_sided=two_sided, compose=compose)
+    if lags is None:
+        lag_values = choose_lags(field, parameter)
+    else:
+        lag_values = _checked_lags(lags)
+    units = _checked_units(field, parameter, unit)
+    _check_size(lag_values)
     expected = "a positive number of cells, such as 1e-3"
     tolerance = checked_number("tolerance", tolerance, np.nextafter(0, 1), expected=expected)
     step_numbers = _step_numbers(field, steps)
-    composed = lags is None if compose is None else compose
+    if compose is None:
+        compose = lags is None
     if field.triangles is not None:
-        chosen = field.valid if nodes is None else field.valid & _checked_nodes(field, nodes)
-        options: dict[str, Any] = {"two_sided": two_sided, "compose": composed}
+        options: dict[str, Any] = {"two_sided": two_sided, "compose": compose}
         options |= {"tolerance": tolerance, "progress": progress}
+        chosen = _chosen_nodes(field, nodes)
         with _threads() as run:
             parts = step_numbers, parameter, lag_values, units, chosen
             slices = triangle_slices(field, *parts, run=run, **options)
         return replace(slices, origin=SliceOrigin.of(field, step_numbers, tolerance))
-    directions = (-1.0, 1.0) if two_sided else (-1.0,)
     samplers = _samplers(field, step_numbers, parameter)
-    whole = field.steady or step_numbers == list(range(len(field.times)))
-    landing = landings(field, lag_values, units) if composed and whole else None
+    landing = None
+    if compose and (field.steady or step_numbers == list(range(len(field.times)))):
+        landing = landings(field, lag_values, units)
     followed = field.valid
-    if nodes is not None and landing is None:
-        followed = followed & _checked_nodes(field, nodes)
+    if landing is None:
+        followed = _chosen_nodes(field, nodes)
     expected = "a positive length in the mesh's units"
     longest = checked_number("longest", longest, np.nextafter(0, 1), np.inf, expected=expected)
-    most = np.full(field.shape, longest if parameter == "arclength" else np.inf)
-    if nodes is not None and parameter == "arclength" and field.surface.poles is None:
-        outside = _distance(_checked_nodes(field, nodes))
-        most = (1 - outside) * np.minimum(most, lag_values[-1] * units)
+    most = np.full(field.shape, np.inf)
+    if parameter == "arclength":
+        most = _longest_paths(field, nodes, longest, lag_values[-1] * units)
     tracing = _Tracing(field, samplers, lag_values, units, followed, tolerance, progress, most)
-    paths_by_side = tracing.follow(directions, landing)
-    backward = paths_by_side[-1.0]
-    forward = paths_by_side.get(1.0)
-    return TraceSlices(
-        lags=lag_values,
-        unit=units,
-        displacement=backward.displacement,
-        forward=None if forward is None else forward.displacement,
-        rate=tracing.rate,
-        reach=backward.reach,
-        forward_reach=None if forward is None else forward.reach,
-        nodes=tracing.nodes,
-        times=field.times[step_numbers],
-        parameter=parameter,
-        origin=SliceOrigin.of(field, step_numbers, tolerance),
-    )
+    slices = tracing.slices(step_numbers, parameter, landing, two_sided=two_sided)
+    return replace(slices, origin=SliceOrigin.of(field, step_numbers, tolerance))
 
 
 def paths(
@@ -214,19 +185,20 @@ def paths(
 
     They start at (N, 2) as (i, j), or at places of a ``TriangleSurface``, at destination time
     ``step``, and are followed to lags (M,) in units of length or time. ``within`` returns whether
-    paths are followed at positions (2, N): one that leaves these is interrupted. On triangles all
-    are followed, and one that has ended stays there. The other parameters, and the errors, are
-    those of :func:`trace`.
+    paths are followed at positions (2, N); elsewhere they are interrupted. On triangles all paths
+    are followed, and stay where they end. Other parameters and errors as for :func:`trace`.
     """
     parameter = _parameter(field, parameter)
     begin = np.array(start, dtype=float).reshape(-1, 2)
     lag_values = _checked_lags(lags)
     number = field.step_number(step)
-    options = {"direction": 1.0 if forward else -1.0, "tolerance": tolerance}
+    options = {"direction": BACKWARD, "tolerance": tolerance}
+    if forward:
+        options["direction"] = FORWARD
     if field.triangles is not None:
         return triangle_paths(field, begin, lag_values, step=number, parameter=parameter, **options)
     sampler = _samplers(field, [number], parameter)[0]
-    # Rest is judged by the motion in a unit, which is a cell and not a unit of the mesh.
+    # A particle is at rest if it hardly moves in a unit; so the unit is a cell, not 1.
     unit = float(lag_unit(field, parameter)[field.valid].max(initial=0.0)) or 1.0
     units = np.full(len(begin), unit)
     result = integrate(sampler, begin, lag_values / unit, units, within=within, **options)
@@ -237,13 +209,71 @@ def _step_numbers(field: FlowField, steps: Any) -> list[int]:
     """Return destination times as indices from 0."""
     if steps is None:
         return list(range(len(field.times)))
+    numbers = []
     if np.iterable(steps):
         numbers = [field.step_number(step) for step in steps]
-    else:
-        numbers = []
     if not numbers:
         raise FieldError(f"steps is {brief(steps)}; expected numbers of time steps, such as [0]")
     return numbers
+
+
+def _check_sign_free(*, two_sided: bool, compose: bool | None) -> None:
+    """Check the options of paths in a sign-free field."""
+    if not two_sided:
+        raise FieldError(
+            "two_sided is False; expected True, because a sign-free field has two equal sides"
+        )
+    if compose:
+        raise FieldError(
+            "compose is True; expected False or None, because paths of a sign-free field cannot "
+            "be composed between nodes of opposite sign"
+        )
+
+
+def _check_size(lags: Floats) -> None:
+    """Check that increasing lags fit into single precision."""
+    if not LEAST_LAG <= lags[0] <= lags[-1] <= MOST_LAG:
+        raise FieldError(
+            f"lags range from {lags[0]:g} to {lags[-1]:g}; expected {LEAST_LAG:g} to "
+            f"{MOST_LAG:g}, because of single precision: choose a unit of their size"
+        )
+
+
+def _checked_units(field: FlowField, parameter: str, unit: ArrayLike | None) -> Floats:
+    """Return one unit of lag at each node, (J, I), by default the unit of the field."""
+    units = lag_unit(field, parameter)
+    if unit is not None:
+        expected = f"a number, or one for each node, of shape {field.shape}"
+        units = checked_array("unit", unit, expected=expected)
+        if units.shape not in ((), field.shape):
+            raise FieldError(f"unit has shape {units.shape}; expected {expected}")
+        units = np.array(np.broadcast_to(units, field.shape))
+    if not (np.isfinite(units).all() and (units > 0).all()):
+        raise FieldError(
+            f"unit has values from {units.min():g} to {units.max():g}; expected positive numbers"
+        )
+    return units
+
+
+def _longest_paths(
+    field: FlowField, nodes: ArrayLike | None, longest: float, last: Floats
+) -> Floats:
+    """Return the required length of the path through each node, (J, I), at most the last lag.
+
+    It decreases with the distance from the requested nodes.
+    """
+    most = np.full(field.shape, longest)
+    if nodes is None or field.surface.poles is not None:
+        return most
+    outside = _distance(_checked_nodes(field, nodes))
+    return np.asarray((1 - outside) * np.minimum(most, last))
+
+
+def _chosen_nodes(field: FlowField, nodes: ArrayLike | None) -> Bools:
+    """Return the valid nodes among some nodes, by default among all, (J, I)."""
+    if nodes is None:
+        return field.valid
+    return field.valid & _checked_nodes(field, nodes)
 
 
 def _samplers(field: FlowField, steps: list[int], parameter: str) -> list[Sampler]:
@@ -266,6 +296,7 @@ def _threads() -> Iterator[Map]:
 
 
 def _parameter(field: FlowField, parameter: str) -> str:
+    """Return what lags measure; a time-varying field is always followed by time."""
     if parameter not in ("arclength", "time"):
         raise FieldError(f'parameter is {brief(parameter)}; expected "arclength" or "time"')
     if field.steady:
@@ -274,6 +305,7 @@ def _parameter(field: FlowField, parameter: str) -> str:
 
 
 def _checked_lags(lags: ArrayLike) -> Floats:
+    """Return lags as an array (M,)."""
     expected = "positive numbers in increasing order"
     lag_values = np.atleast_1d(checked_array("lags", lags, expected=expected))
     good = np.isfinite(lag_values) & (np.diff(lag_values, prepend=0.0) > 0)
@@ -283,6 +315,7 @@ def _checked_lags(lags: ArrayLike) -> Floats:
 
 
 def _checked_nodes(field: FlowField, nodes: ArrayLike) -> Bools:
+    """Return a mask of nodes in the shape of the field."""
     chosen: Bools = checked_array("nodes", nodes, expected="a mask of the nodes") != 0
     if chosen.shape != field.shape:
         raise FieldError(f"nodes has shape {chosen.shape}; expected {field.shape} as the field has")
@@ -335,6 +368,36 @@ class _Tracing:
         rate[:, ~self.field.valid] = 0.0
         return rate
 
+    def slices(
+        self,
+        step_numbers: list[int],
+        parameter: str,
+        landing: Indices | None,
+        *,
+        two_sided: bool,
+    ) -> TraceSlices:
+        """Return the slices at the destination times of the samplers."""
+        forward = None
+        forward_reach = None
+        if two_sided:
+            sides = self.follow((BACKWARD, FORWARD), landing)
+            forward = sides[FORWARD].displacement
+            forward_reach = sides[FORWARD].reach
+        else:
+            sides = self.follow((BACKWARD,), landing)
+        return TraceSlices(
+            lags=self.lags,
+            unit=self.unit,
+            displacement=sides[BACKWARD].displacement,
+            forward=forward,
+            rate=self.rate,
+            reach=sides[BACKWARD].reach,
+            forward_reach=forward_reach,
+            nodes=self.nodes,
+            times=self.field.times[step_numbers],
+            parameter=parameter,
+        )
+
     def follow(
         self, directions: Sequence[float], landing: Indices | None
     ) -> dict[float, SideSlices]:
@@ -343,7 +406,7 @@ class _Tracing:
         Parameters
         ----------
         directions
-            1 for where particles go, -1 for where they came from.
+            ``FORWARD`` or ``BACKWARD``, or both.
         landing
             What :func:`landings` returns; from it the paths at long lags are composed of shorter
             ones. ``None`` to integrate all paths.
@@ -353,14 +416,13 @@ class _Tracing:
         else:
             direct = self._direct_lags(landing)
         shape = (len(self.samplers), self.field.valid.size)
-        sides = {
-            direction: SideSlices(
+        sides = {}
+        for direction in directions:
+            sides[direction] = SideSlices(
                 np.zeros((len(self.lags) + 1, *shape, 2), np.float32),
                 np.zeros(shape, np.float32),
                 np.zeros(shape, bool),
             )
-            for direction in directions
-        }
         with _threads() as run:
             self._integrate(sides, direct, run)
             for direction, flat in sides.items():
@@ -406,12 +468,9 @@ class _Tracing:
             reach[target] = result.reach
             side.polar[step, target] = result.polar
 
-        jobs = [
-            (step, direction, slice(first, first + BLOCK))
-            for step in range(len(self.samplers))
-            for direction in sides
-            for first in range(0, len(at), BLOCK)
-        ]
+        steps = range(len(self.samplers))
+        blocks = [slice(first, first + BLOCK) for first in range(0, len(at), BLOCK)]
+        jobs = list(itertools.product(steps, sides, blocks))
         for _ in track(run(work, jobs), len(jobs), "Tracing", show=self.progress):
             pass
 
@@ -427,7 +486,10 @@ class _Tracing:
         moved = np.empty_like(position)
         covered = lag.copy()
         ends = np.empty_like(lag)
-        for number in np.unique(step) if len(self.samplers) > 1 else [0]:
+        numbers = [0]
+        if len(self.samplers) > 1:
+            numbers = np.unique(step).tolist()
+        for number in numbers:
             if len(self.samplers) > 1:
                 group = step == number
             else:

@@ -158,6 +158,7 @@ class Child:
             self._asking.release()
 
     def _request(self, value: Any, timeout: float) -> tuple[Any, list[AnyArray]]:
+        """Return the value and the arrays of the answer to a request."""
         if self._death or not self.close.alive:
             raise ChildError(self._death or "was ended")
         number = next(self._numbers)
@@ -231,7 +232,9 @@ def _listen(
                 if number not in waiting:
                     raise ValueError(f"an answer to request {number!r}, which was not sent")
                 waiting.discard(number)
-                answers.put((header, [] if number in stale else arrays))
+                if number in stale:
+                    arrays = []
+                answers.put((header, arrays))
     except (ValueError, OSError, MemoryError) as error:
         ending = f"sent a malformed answer: {error}"
         process.end()
@@ -251,6 +254,7 @@ def _ending(status: int | None) -> str:
 
 
 def _forked(entry: str, memory: int, preload: tuple[str, ...], prints: bool) -> _Process:  # noqa: FBT001
+    """Start a process by a fork of the server, which has imported ``preload``."""
     requests = os.pipe()
     answers = os.pipe()
     status = os.pipe()
@@ -290,6 +294,7 @@ def _forked(entry: str, memory: int, preload: tuple[str, ...], prints: bool) -> 
 
 
 def _spawned(entry: str, memory: int, _preload: tuple[str, ...], prints: bool) -> _Process:  # noqa: FBT001
+    """Start a process with a new interpreter, where processes cannot be forked."""
     process = subprocess.Popen(
         command(spawned, entry=entry, memory=memory, prints=prints),
         stdin=subprocess.PIPE,

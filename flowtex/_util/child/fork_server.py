@@ -66,7 +66,7 @@ call_at_fork(after=_forget_servers)
 
 
 def fork_server(preload: tuple[str, ...], dead: ForkServer | None = None) -> ForkServer:
-    """Return the server that has loaded these modules, another one than one that is ``dead``.
+    """Return the server that has loaded these modules, a new one if it is ``dead``.
 
     Called early, it loads them in the background for children that will be started.
     """

@@ -63,8 +63,10 @@ def spawned(entry: str, memory: int, prints: bool) -> None:  # noqa: FBT001 by n
 def settle(memory: int, *, prints: bool) -> None:
     """Limit memory, and let the system end it first; drop output unless it ``prints``."""
     device = os.open(os.devnull, os.O_RDWR)
-    for standard in (0, 1) if prints else (0, 1, 2):  # output of C libraries is dropped
-        os.dup2(device, standard)
+    os.dup2(device, 0)
+    os.dup2(device, 1)
+    if not prints:  # output of C libraries is dropped
+        os.dup2(device, 2)
     with suppress(OSError):
         Path("/proc/self/oom_score_adj").write_text(OOM_SCORE, encoding="utf-8")
     if sys.platform == "win32":
@@ -115,8 +117,10 @@ def serve(entry: str, reads: IO[bytes], writes: IO[bytes]) -> None:
 
 def _kind(error: Exception) -> str:
     """Return the name of the class, or of its base class that the other end knows."""
-    names = [kind.__name__ for kind in type(error).__mro__]
-    return next((name for name in names if name in QUIET), names[0])
+    for kind in type(error).__mro__:
+        if kind.__name__ in QUIET:
+            return kind.__name__
+    return type(error).__name__
 
 
 def _listen(reads: IO[bytes], requests: SimpleQueue[tuple[int, Any]], cancelled: set[int]) -> None:
@@ -138,7 +142,7 @@ def write_message(stream: IO[bytes], value: Any, arrays: Sequence[AnyArray] = ()
 
     Nothing is unpickled: a process that parses an untrusted file may be compromised.
     """
-    contiguous = [np.ascontiguousarray(array) for array in arrays]
+    contiguous = list(map(np.ascontiguousarray, arrays))
     infos = [[array.dtype.str, np.shape(array)] for array in arrays]
     header = json.dumps({"value": value, "arrays": infos}).encode()
     if len(header) > HEADER_BYTES:

@@ -26,20 +26,18 @@ BACKGROUNDS = ("theme", "black", "white", "gray")
 #: Differences of a second pane, by label.
 COMPARISONS: dict[str, dict[str, Any]] = {
     "nothing": {},
-    **{
-        named_values(changes): changes
-        for changes in (
-            {"lod": False},
-            {"kernel": "box"},
-            {"two_sided": False},
-            {"fixed_grain": True},
-            {"samples": 10},
-            {"show_level": True},
-            {"lines": "pathlines"},
-            {"lines": "streamlines"},
-        )
-    },
 }
+for _changes in (
+    {"lod": False},
+    {"kernel": "box"},
+    {"two_sided": False},
+    {"fixed_grain": True},
+    {"samples": 10},
+    {"show_level": True},
+    {"lines": "pathlines"},
+    {"lines": "streamlines"},
+):
+    COMPARISONS[named_values(_changes)] = _changes
 #: Label of a second pane at another time, before it.
 TIME = "Time: "
 #: Most times that are offered, evenly spaced.
@@ -64,9 +62,12 @@ def comparison(name: str) -> dict[str, Any]:
 def look_shown(look: Look) -> dict[str, Any]:
     """Return the appearance of a surface as the page shows it, with all values explicit."""
     shown = {name: getattr(look, name) for name in LOOK}
-    shown |= {name: shown[name] is not False for name in EARTH_LINES}
-    # A colour map without a name is shown as the first one.
-    return {**shown, "cmap": look.cmap if isinstance(look.cmap, str) else CMAPS[0]}
+    for name in EARTH_LINES:
+        shown[name] = shown[name] is not False
+    shown["cmap"] = look.cmap
+    if not isinstance(look.cmap, str):  # a colour map without a name is shown as the first one
+        shown["cmap"] = CMAPS[0]
+    return shown
 
 
 class Appearance(Controller):
@@ -119,15 +120,13 @@ class Appearance(Controller):
         choice = self.state.get("background")
         if name_among(theme, THEMES):
             self.theme = theme
-        else:
-            self.theme = self.theme
         if name_among(choice, BACKGROUNDS):
             self.background = choice
-        else:
-            self.background = self.background
         self.state.set(theme=self.theme, background=self.background)
-        themed = self.background == BACKGROUNDS[0]
-        self.viewport.set_background(self.theme if themed else self.background)
+        if self.background == BACKGROUNDS[0]:
+            self.viewport.set_background(self.theme)
+        else:
+            self.viewport.set_background(self.background)
         self.area.changed()
 
     def take_comparison(self) -> None:
@@ -155,12 +154,15 @@ class Appearance(Controller):
     def describe(self) -> State:
         """Return settings, colours, background and comparison."""
         scene = self.area.scene
-        is_automatic = self.area.clim is None and scene.has_own_range
+        if self.area.clim is None and scene.has_own_range:
+            clim = None
+        else:
+            clim = scene.scalar_limits
         return {
             "settings": dict(self.settings),
             "colour": self.area.scalars or PLAIN,
             **look_shown(scene.appearance),
-            "clim": None if is_automatic else scene.scalar_limits,
+            "clim": clim,
             "theme": self.theme,
             "background": self.background,
             "split": self.compared,
@@ -198,15 +200,24 @@ class Appearance(Controller):
             else:
                 name = SPEED
         if name != first_name:
-            look = {"clim": None, **look, "scalars": False if name == PLAIN else name}
+            look = {"clim": None, **look, "scalars": name}
+            if name == PLAIN:
+                look["scalars"] = False
         return self._first_look.changed(**look)
 
     def _comparisons(self) -> list[str]:
+        """Return the names of all comparisons that the page offers for the present flow."""
         times = self.viewport.field.times
         steps = np.linspace(0, len(times) - 1, min(len(times), MOST_TIMES)).round().astype(int)
-        others = [f"{TIME}{times[n]:.12g}" for n in steps if len(times) > 1]
-        others += [COLOUR_BY + name for name in self.area.scene.scalar_names]
+        names = []
+        for name, changes in COMPARISONS.items():
+            if "lines" not in changes or not self.viewport.field.steady:
+                names.append(name)
+        if len(times) > 1:
+            names += [f"{TIME}{time:.12g}" for time in times[steps]]
+        names += [COLOUR_BY + name for name in self.area.scene.scalar_names]
         data = self.beside.data
-        steady = self.viewport.field.steady
-        settings = [n for n, changes in COMPARISONS.items() if not (steady and "lines" in changes)]
-        return [*settings, *others, *(FILE + name for name in data.names if name != data.name)]
+        for name in data.names:
+            if name != data.name:
+                names.append(FILE + name)
+        return names

@@ -173,7 +173,7 @@ class FlowOpener(Controller):
     async def _read(
         self, request: LoadRequest, time: Callable[[FlowField], float], *, nearest: bool = False
     ) -> LoadedFlow:
-        """Read a flow, and trace it at a time, in a thread; ``Stopped`` if it is not wanted.
+        """Read a flow, and trace it at a time, in a thread; ``Stopped`` if it is cancelled.
 
         Work that has begun is finished even if another flow was requested.
         """

@@ -118,6 +118,8 @@ class Data(FlowOpener):
         self._begin(LoadRequest(name, choice, then), follows=is_similar and then is None)
 
     async def _open(self, request: LoadRequest) -> None:
+        """Read a flow, show it, and do what was to follow."""
+
         def time(field: FlowField) -> float:
             same = self._has_same_velocity(request.name, request.choice, field)
             return first_time(self.area.scene, field, keep=same and not request.is_link)
@@ -166,30 +168,43 @@ class Data(FlowOpener):
             raise
 
     def _show_choice(self) -> None:
+        """Send the controls of the shown flow; while another one opens, only its name."""
         values = {"file": self.name, **self._options()}
         if self._goal != (self.name, self.choice):
-            values = {name: values[name] for name in ("name", "about")}
+            values = {"name": values["name"], "about": values["about"]}
         self.state.send(busy="", **values)
 
     def _requested(self) -> Choice:
+        """Return the part of the file that the controls of the page request."""
         options = self._options()
-        get = self.state.get
-        choices_of = {"block": "blocks", "vectors": "vectors_choices", "axis": "axes"}
-        block, vectors, axis = (
-            value if name_among(value := get(name), options[choices]) else options[name]
-            for name, choices in choices_of.items()
-        )
+        requested = {}
+        for name, choices in (
+            ("block", "blocks"),
+            ("vectors", "vectors_choices"),
+            ("axis", "axes"),
+        ):
+            requested[name] = options[name]
+            value = self.state.get(name)
+            if name_among(value, options[choices]):
+                requested[name] = value
+        block = requested["block"]
+        vectors = requested["vectors"]
+        axis = requested["axis"]
         if block != options["block"]:  # which has other planes and arrays
-            arrays = self._current.source.block_vectors[block]
-            return Choice(vectors if vectors in arrays else "", "", block)
-        plane = ""
-        if axis:
-            last = self._part.planes[axis] - 1
-            index = int(clipped(self.state.get("index"), options["index"], 0, last))
-            plane = self._part.plane_at(axis, index if axis == options["axis"] else (last + 1) // 2)
+            if vectors not in self._current.source.block_vectors[block]:
+                vectors = ""
+            return Choice(vectors, "", block)
+        if not axis:
+            return Choice(vectors, "", block)
+        last = self._part.planes[axis] - 1
+        index = int(clipped(self.state.get("index"), options["index"], 0, last))
+        if axis != options["axis"]:
+            plane = self._part.plane_at(axis, (last + 1) // 2)
+        elif index == options["index"]:
             # A plane between the places of the slider stays until that is moved.
-            if axis == options["axis"] and index == options["index"]:
-                plane = self.choice.plane
+            plane = self.choice.plane
+        else:
+            plane = self._part.plane_at(axis, index)
         return Choice(vectors, plane, block)
 
     @property
@@ -197,6 +212,7 @@ class Data(FlowOpener):
         return self._current.source.part(self.choice.block or None)
 
     def _options(self) -> dict[str, Any]:
+        """Return the values of the controls that choose a part of the file."""
         source = self._current.source
         part = self._part
         if part.planes:
@@ -204,18 +220,24 @@ class Data(FlowOpener):
         else:
             axis = ""
         count = part.planes.get(axis, 0)
+        index = 0
+        if count:
+            index = part.plane_number(self.choice.plane) or 0
+        vectors_choices = []
+        if len(part.vectors) > 1:
+            vectors_choices = list(part.vectors)
         field = self.viewport.field
         return {
             "is_file": self.library.is_file(self.name),
             "name": (field.name or source.name).replace("_", " ") or "flow",
             "about": about(field),
-            "vectors_choices": list(part.vectors) if len(part.vectors) > 1 else [],
-            "vectors": self.choice.vectors or (part.vectors[0] if part.vectors else ""),
+            "vectors_choices": vectors_choices,
+            "vectors": self.choice.vectors or next(iter(part.vectors), ""),
             "blocks": list(source.blocks),
-            "block": self.choice.block or (source.blocks[0] if source.blocks else ""),
+            "block": self.choice.block or next(iter(source.blocks), ""),
             "axes": list(part.planes),
             "axis": axis,
-            "index": (part.plane_number(self.choice.plane) or 0) if count else 0,
+            "index": index,
             "plane_text": part.plane_text(self.choice.plane),
             "block_word": source.block_word,
             "planes": max(count - 1, 0),
@@ -242,7 +264,10 @@ def _axis(plane: str) -> str:
 def about(field: FlowField) -> str:
     """Return a short description of a field."""
     words = [field.short_size]
-    words.append("steady" if field.steady else f"{len(field.times)} times")
+    if field.steady:
+        words.append("steady")
+    else:
+        words.append(f"{len(field.times)} times")
     closed = []
     for axis, is_closed in zip("ji", field.periodic, strict=True):
         if is_closed:
@@ -314,11 +339,13 @@ class FileBeside(FlowOpener):
         super().close()
 
     async def _open(self, request: LoadRequest) -> None:
+        """Read a flow, and show it in the second view."""
         flow = await self._read(request, partial(time_in, self.area.scene), nearest=True)
-        units = [field.length_unit for field in (self.viewport.field, flow.field)]
-        if all(units) and units[0] != units[1]:
+        present_unit = self.viewport.field.length_unit
+        unit = flow.field.length_unit
+        if present_unit and unit and present_unit != unit:
             raise FieldError(
-                f"{request.name} is in {units[1]} and {self.data.name} in {units[0]}; expected "
+                f"{request.name} is in {unit} and {self.data.name} in {present_unit}; expected "
                 "the same unit of length in both files, because they share one camera"
             )
         self._flow = flow

@@ -128,7 +128,8 @@ class Library:
         )
         self._fields: WeakCache[FlowField] = WeakCache()
         self._making: defaultdict[Opener, threading.Lock] = defaultdict(threading.Lock)
-        if self._folder is not None or any(isinstance(o, _Files) for o in openers.values()):
+        has_files = any(isinstance(opener, _Files) for opener in openers.values())
+        if has_files or self._folder is not None:
             prepare_readers()
         if not self.names:
             endings = " ".join(sorted(SUFFIXES))
@@ -186,17 +187,18 @@ class Library:
             else:
                 source = _source_of(flow, options)
             openers[_free(source.name or "flow", openers)] = _constant(source)
-        return cls(openers, None if folder is None else Path(folder))
+        if folder is not None:
+            folder = Path(folder)
+        return cls(openers, folder)
 
     @property
     def names(self) -> tuple[str, ...]:
         """Names of all flows; the folder is searched again."""
-        if self._folder is None:
-            files = []
-        else:
-            files = find_files(self._folder)
-        found = {name: _Files((path,)) for name, path in files}
-        self._openers = {**self._named, **found, **self._own}
+        openers = dict(self._named)
+        if self._folder is not None:
+            for name, path in find_files(self._folder):
+                openers[name] = _Files((path,))
+        self._openers = openers | self._own
         return tuple(self._openers)
 
     def source(self, name: str) -> FlowSource:
@@ -213,6 +215,7 @@ class Library:
         )
 
     def _opener(self, name: str) -> Opener:
+        """Return the function that opens a flow by its name."""
         opener = self._openers.get(name)
         if opener is None and self._is_line(name):
             return _Line(name)
@@ -273,6 +276,7 @@ class Library:
 
 
 def _source_of(flow: Any, options: dict[str, Any]) -> FlowSource:
+    """Return the source of a dataset, a field or a mesh."""
     options = {key: value for key, value in options.items() if value is not None}
     if is_dataset(flow) and not options:
         return DatasetSource(flow)
@@ -302,7 +306,9 @@ class _Files:
 
     @property
     def identity(self) -> Identity:
-        return file_identity([self.paths[0] / "zarr.json"] if self._is_store else self.paths)
+        if self._is_store:
+            return file_identity([self.paths[0] / "zarr.json"])
+        return file_identity(self.paths)
 
     @property
     def _is_store(self) -> bool:
@@ -345,8 +351,12 @@ def find_files(folder: Path) -> list[tuple[str, Path]]:
                 stores.append(n)
         depth = len(here.relative_to(folder).parts)
         hidden = {name for name in (*folders, *names) if name.startswith(".")}
-        folders[:] = sorted(set(folders) - {*stores, *hidden}) if depth < FOLDER_DEPTH else []
-        for path in (here / name for name in sorted({*stores, *names} - hidden)):
+        searched = set()
+        if depth < FOLDER_DEPTH:
+            searched = set(folders) - {*stores, *hidden}
+        folders[:] = sorted(searched)
+        for name in sorted({*stores, *names} - hidden):
+            path = here / name
             real = Path(os.path.realpath(path))
             is_known = path.suffix.lower() in SUFFIXES | {".bin"} and path.is_file()
             if real.is_relative_to(folder) and (is_known or path.name in stores):
@@ -354,16 +364,17 @@ def find_files(folder: Path) -> list[tuple[str, Path]]:
         if len(files) >= MOST_FILES:
             break
     files = files[:MOST_FILES]
-    members = {member for _, path in files for member in members_of(path)}
-    # The solution of a PLOT3D pair is opened along with its grid.
-    members.update(
-        path
-        for _, path in files
-        if path.suffix.lower() == ".bin" and find_grid(path) not in (None, path)
-    )
-    return [
-        (name, path)
-        for name, path in files
-        if path not in members
-        and (path.suffix.lower() not in WITHOUT_VECTORS or path.with_suffix(".npy").exists())
-    ]
+    members: set[Path] = set()
+    for _, path in files:
+        members.update(members_of(path))
+        # The solution of a PLOT3D pair is opened along with its grid.
+        if path.suffix.lower() == ".bin" and find_grid(path) not in (None, path):
+            members.add(path)
+    opened = []
+    for name, path in files:
+        lacks_vectors = path.suffix.lower() in WITHOUT_VECTORS
+        if lacks_vectors and not path.with_suffix(".npy").exists():
+            continue
+        if path not in members:
+            opened.append((name, path))
+    return opened

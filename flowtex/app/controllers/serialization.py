@@ -91,12 +91,13 @@ def to_link(state: State, first: State | None = None) -> str:
     first = first or {}
     defaults = _defaults_of(state)
     first_settings = first.get("settings") or {}
-    pairs = [
-        (name, form.write(state[name]))
-        for name, form in _FORMS.items()
-        if state.get(name) is not None
-        and (state[name] != defaults.get(name) or state[name] != first.get(name, state[name]))
-    ]
+    pairs = []
+    for name, form in _FORMS.items():
+        value = state.get(name)
+        if value is None:
+            continue
+        if value != defaults.get(name) or value != first.get(name, value):
+            pairs.append((name, form.write(value)))
     for name, value in (state.get("settings") or {}).items():
         if name not in TABLE:
             raise SettingsError(
@@ -169,10 +170,13 @@ NAME = Form(read=_name)
 
 
 def _split(text: str) -> str:
+    """Return the name of a comparison, which must exist."""
     if text.startswith(TIME):
         NUMBER.read(text.removeprefix(TIME))
         return text
-    return (NAME if text.startswith((COLOUR_BY, FILE)) else _one_of(*COMPARISONS)).read(text)
+    if text.startswith((COLOUR_BY, FILE)):
+        return NAME.read(text)
+    return _one_of(*COMPARISONS).read(text)
 
 
 #: How each name is read and written, in the order of a link.
@@ -234,18 +238,33 @@ def _render(state: State, source: str | None, size: tuple[int, int]) -> str:
             raise FieldError("the state has no file; pass the expression that makes its field")
         source = _literal(state["file"])
         values = _part(state)
-    state = {**DEFAULTS, **{name: value for name, value in state.items() if value is not None}}
+    state_or_default = dict(DEFAULTS)
+    for name, value in state.items():
+        if value is not None:
+            state_or_default[name] = value
+    state = state_or_default
     defaults = _defaults_of(state)
-    values |= {"size": size, "scalars": state["colour"] != PLAIN and state["colour"]}
-    values |= {n: state[n] for n in (*LOOK, "time", "clock") if state.get(n) != defaults.get(n)}
-    has_theme = state["background"] == DEFAULTS["background"]
-    values["background"] = THEMES[state["theme"]] if has_theme else state["background"]
-    values |= {"camera": state["camera"]} if "camera" in state else {}
+    values |= {"size": size, "scalars": state["colour"]}
+    if state["colour"] == PLAIN:
+        values["scalars"] = False
+    for name in (*LOOK, "time", "clock"):
+        if state.get(name) != defaults.get(name):
+            values[name] = state[name]
+    values["background"] = state["background"]
+    if state["background"] == DEFAULTS["background"]:
+        values["background"] = THEMES[state["theme"]]
+    if "camera" in state:
+        values["camera"] = state["camera"]
     settings = state.get("settings", {})
     if settings.get("noise") != "image":  # the image is not in the state
-        values |= {k: v for k, v in settings.items() if v != TABLE[k].default}
-    arguments = [f"{name}={_literal(value)}" for name, value in values.items()]
-    return "\n".join(["flowtex.render(", *(f"    {each}," for each in (source, *arguments)), ")"])
+        for name, value in settings.items():
+            if value != TABLE[name].default:
+                values[name] = value
+    lines = ["flowtex.render(", f"    {source},"]
+    for name, value in values.items():
+        lines.append(f"    {name}={_literal(value)},")
+    lines.append(")")
+    return "\n".join(lines)
 
 
 def _part(state: State) -> dict[str, Any]:
@@ -261,7 +280,8 @@ def _part(state: State) -> dict[str, Any]:
     if is_dataset or axis in ("x", "y", "z", OUTER):
         plane = values.pop("plane", None)
         if is_dataset:
-            values |= {"isel": {axis: int(number)}} if number.isdecimal() else {}
+            if number.isdecimal():
+                values["isel"] = {axis: int(number)}
         elif axis != OUTER:
             values["slice"] = plane
     return values

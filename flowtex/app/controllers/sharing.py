@@ -33,7 +33,7 @@ from flowtex.errors import FieldError
 from flowtex.field import FlowField
 from flowtex.plotting.offscreen.encoders import DEFAULT_QUALITY, MovieWriter, check_movie
 from flowtex.plotting.offscreen.movie import FrameTimes, frame_times
-from flowtex.scene.annotations import Layout, annotate_views
+from flowtex.scene.annotations import Layout, annotate_views, room_of
 from flowtex.settings import Settings
 
 T = TypeVar("T")
@@ -117,6 +117,7 @@ class Sharing(Controller):
         self.state.set(out_progress=None)
 
     def _new_job(self) -> Job:
+        """Return a job with the values of the dialog; its file is reserved."""
         get = self.state.get
         kind = self.state.get("out_format")
         if kind not in FORMATS:
@@ -124,11 +125,14 @@ class Sharing(Controller):
         path = self.downloads.reserve(f"{self.viewport.field.name or 'flow'}.{kind.lower()}")
         try:
             numbers = {name: self._number(name) for name in LABELS}
+            supersampling = 1
+            if get("out_smooth"):
+                supersampling = 2
             return Job(
                 self.viewport,
                 path,
                 (int(numbers["out_width"]), int(numbers["out_height"])),
-                supersampling=2 if get("out_smooth") else 1,
+                supersampling=supersampling,
                 density=numbers["out_density"],
                 annotations=bool(get("out_annotations")),
                 seconds=numbers["out_seconds"],
@@ -139,6 +143,7 @@ class Sharing(Controller):
             raise
 
     def _number(self, name: str) -> float:
+        """Return a number of the dialog."""
         value = self.state.get(name)
         checked = number(value)
         if checked is None:
@@ -146,6 +151,8 @@ class Sharing(Controller):
         return checked
 
     async def _run(self, job: Job, before: asyncio.Task[None] | None) -> None:
+        """Write a file after an earlier job has ended, and offer it on the page."""
+
         def report(share: float) -> None:
             if (percent := round(100 * share)) != self.state.get("out_progress"):
                 self.state.send(out_progress=percent)
@@ -178,16 +185,14 @@ class Sharing(Controller):
     def show_state(self) -> None:
         """Show the link and the lines of Python on the page."""
         state = self.present_state()
-        beside = self._beside.name
-        is_file = self.context.library.is_file
+        sources = {}
+        if not self.context.library.is_file(self._data.name):
+            sources["source"] = "field"
+        if not self.context.library.is_file(self._beside.name):
+            sources["source_beside"] = "field_beside"
         self.state.set(
             link="#" + to_link(state, self._first),
-            python=to_python(
-                state,
-                source=None if is_file(self._data.name) else "field",
-                source_beside=None if is_file(beside) else "field_beside",
-                size=self.viewport.pane_size,
-            ),
+            python=to_python(state, **sources, size=self.viewport.pane_size),
         )
 
     def take_link(self, text: object) -> None:
@@ -213,11 +218,11 @@ class Job:
     """An export, which draws and writes while a page continues, without changing its view.
 
     A picture of any size is drawn a tile at a time, through a window as large as a tile. The suffix
-    of the file is the format: a picture as PNG, or a movie, which is a seamless loop of a steady
-    flow, or all times of one that varies; an MP4 gets even sides. ``supersampling`` are the pixels
-    that are drawn, along each side, for one of the result, and ``density`` those of the result for
-    one that the settings speak of: 2 has grains of twice as many pixels, for high-resolution
-    screens and print. Raises an ExportError or a MovieError for invalid arguments.
+    of the file is the format: a PNG, or a movie, which is a seamless loop of a steady flow, or
+    shows all times of a varying flow. An MP4 gets even sides. ``supersampling`` is the number of
+    drawn pixels for each pixel of the result, along each side. ``density`` scales lengths that the
+    settings give in pixels: with 2 grains are twice as large, for high-resolution screens and
+    print. Raises an ExportError or a MovieError for invalid arguments.
     """
 
     def __init__(
@@ -238,7 +243,10 @@ class Job:
         suffix = path.suffix.lower()
         if suffix == ".mp4":
             size = (max(size[0] // 2 * 2, 2), max(size[1] // 2 * 2, 2))
-        _check(size, density, MOST_PIXELS if suffix == ".png" else MOST_MOVIE_PIXELS)
+        if suffix == ".png":
+            _check(size, density, MOST_PIXELS)
+        else:
+            _check(size, density, MOST_MOVIE_PIXELS)
         self._viewport = viewport
         self._size = size
         self._quality = quality
@@ -278,6 +286,7 @@ class Job:
             check()
 
     async def _make_movie(self, viewport: Viewport, frames: FrameTimes) -> None:
+        """Draw the frames, and write them to the file."""
         viewport.set_still(still=False)
         if viewport.field.steady:
             motion = _moving(viewport.handle.settings, viewport.field).motion
@@ -301,6 +310,7 @@ class Job:
             await asyncio.wrap_future(self._pool.submit(writer.close))
 
     def _prepare(self) -> None:
+        """Set the resolution of the panes, and leave room for annotations."""
         panes = self._viewport.panes
         density = self._density
         if len(panes) > 1:
@@ -312,8 +322,7 @@ class Job:
             pane.density = density * self._supersampling
         if self._annotations:
             layouts = self._annotate(np.zeros((*self._size[::-1], 3), np.uint8))
-            above = max(each.above for each in layouts)
-            below = max(each.below for each in layouts)
+            above, below = room_of(layouts)
             self._rows = slice(above, self._size[1] - below)
 
     async def _draw(self, before: float, share: float) -> Bytes:
@@ -336,6 +345,7 @@ class Job:
         return canvas
 
     def _annotate(self, picture: Bytes) -> list[Layout]:
+        """Write annotations on a picture of all panes in place; return their layouts."""
         viewport = self._viewport
         return annotate_views(
             picture,
@@ -348,6 +358,8 @@ class Job:
         )
 
     async def _in_thread(self, work: Callable[..., T], *arguments: Any) -> T:
+        """Do work in the thread of the job, which ends once the job is done."""
+
         def stopping() -> T:
             with stoppable(lambda: self.done):
                 return work(*arguments)
@@ -356,6 +368,7 @@ class Job:
 
 
 def _moving(settings: Settings, field: FlowField) -> Settings:
+    """Return settings with which a steady flow moves."""
     moving = settings.copy()
     if field.steady and moving.motion == "off":
         moving.motion = "speed"
@@ -363,7 +376,8 @@ def _moving(settings: Settings, field: FlowField) -> Settings:
 
 
 def _check(size: tuple[int, int], density: float, most: int) -> None:
-    if not all(1 <= side <= LONGEST_SIDE_PX for side in size) or size[0] * size[1] > most:
+    """Check the size of an image in pixels, and its density."""
+    if min(size) < 1 or max(size) > LONGEST_SIDE_PX or size[0] * size[1] > most:
         raise ExportError(
             f"the size is {size[0]} x {size[1]}; expected 1 to {LONGEST_SIDE_PX:,} pixels along "
             f"each side, and at most {most:,} in all"

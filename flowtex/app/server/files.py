@@ -84,8 +84,9 @@ class Routes:
 
     async def respond(self, name: str, request: web.Request) -> web.StreamResponse:
         """Answer a request for a file, or an upload."""
-        is_upload = request.method == "POST"
-        return await (self.receive(name, request) if is_upload else self.answer(name))
+        if request.method == "POST":
+            return await self.receive(name, request)
+        return await self.answer(name)
 
     def give(self, stem: str, content: Give) -> str:
         """Serve files, whose names begin with a stem and a full stop; return its address.
@@ -219,15 +220,22 @@ class Downloads:
 
 def plain_name(name: str) -> str:
     """Return a name that leads to no other folder and is valid on every system."""
-    plain = "".join(c if c.isalnum() or c in " ._-" else "_" for c in name).strip(" .")
+    letters = []
+    for letter in name:
+        if not (letter.isalnum() or letter in " ._-"):
+            letter = "_"
+        letters.append(letter)
+    plain = "".join(letters).strip(" .")
     if DEVICE.match(plain):
         plain = f"_{plain}"
-    stem, dot, ending = plain.rpartition(".")
-    if stem:
-        ending = _cut(ending, ENDING_BYTES)
-    else:
-        ending = ""
-    return f"{_cut(stem or plain, NAME_BYTES)}{dot if ending else ''}{ending}" or "flow"
+    stem, _, ending = plain.rpartition(".")
+    if not stem:
+        return _cut(plain, NAME_BYTES) or "flow"
+    stem = _cut(stem, NAME_BYTES)
+    ending = _cut(ending, ENDING_BYTES)
+    if ending:
+        return f"{stem}.{ending}"
+    return stem or "flow"
 
 
 def _cut(text: str, most: int) -> str:

@@ -112,51 +112,64 @@ def guard(application: web.Application, *, hosts: Container[str] = LOCAL) -> Non
 
     @web.middleware
     async def own_pages_only(request: web.Request, handler: Handler) -> web.StreamResponse:
-        name = (_split(f"//{request.headers.get('Host', '')}").hostname or "").removesuffix(".")
-        if not (ANY in hosts or name in hosts or _is_address(name)):
-            words = (
-                f"The server does not accept the host name {name[:100]!r}; allow it with "
-                "--allow-host NAME.\n"
-            )
-            raise web.HTTPForbidden(text=words)
-        origin = request.headers.get("Origin")
-        if origin is not None and _split(origin).netloc not in _own_hosts(request):
-            raise web.HTTPForbidden(text="Other sites cannot use this page.\n")
+        _check_source(request, hosts)
         return await handler(request)
 
-    @web.middleware
-    async def faults_to_log(request: web.Request, handler: Handler) -> web.StreamResponse:
-        try:
-            return await handler(request)
-        except web.HTTPException:
-            raise
-        except web.RequestPayloadError:  # such as a body that is not gzip
+    application.middlewares.extend((_faults_to_log, _in_time, own_pages_only))
+    application.on_response_prepare.append(_add_headers)
+
+
+def _check_source(request: web.Request, hosts: Container[str]) -> None:
+    """Refuse a request that has another host name or comes from another site."""
+    name = (_split(f"//{request.headers.get('Host', '')}").hostname or "").removesuffix(".")
+    if not (ANY in hosts or name in hosts or _is_address(name)):
+        words = (
+            f"The server does not accept the host name {name[:100]!r}; allow it with "
+            "--allow-host NAME.\n"
+        )
+        raise web.HTTPForbidden(text=words)
+    origin = request.headers.get("Origin")
+    if origin is not None and _split(origin).netloc not in _own_hosts(request):
+        raise web.HTTPForbidden(text="Other sites cannot use this page.\n")
+
+
+@web.middleware
+async def _faults_to_log(request: web.Request, handler: Handler) -> web.StreamResponse:
+    """Answer a request; an unexpected error is logged, and not sent."""
+    try:
+        return await handler(request)
+    except web.HTTPException:
+        raise
+    except web.RequestPayloadError:  # such as a body that is not gzip
+        raise web.HTTPBadRequest from None
+    except Exception as error:
+        if request.transport is None:  # the client no longer waits for the answer
             raise web.HTTPBadRequest from None
-        except Exception as error:
-            if request.transport is None:  # the client no longer waits for the answer
-                raise web.HTTPBadRequest from None
-            if isinstance(error, OSError) and error.errno == errno.ENAMETOOLONG:
-                raise web.HTTPNotFound from None
-            # An address contains secrets, so only its pattern is written.
-            resource = request.match_info.route.resource
-            target = f"{request.method} {resource.canonical if resource else ''}"
-            expected = isinstance(error, (OSError, FieldError))
-            _log.error("%s: %s: %s", target, type(error).__name__, error, exc_info=not expected)
-            raise web.HTTPInternalServerError(text=FAULT) from None
+        if isinstance(error, OSError) and error.errno == errno.ENAMETOOLONG:
+            raise web.HTTPNotFound from None
+        # An address contains secrets, so only its pattern is written.
+        resource = request.match_info.route.resource
+        pattern = ""
+        if resource:
+            pattern = resource.canonical
+        target = f"{request.method} {pattern}"
+        expected = isinstance(error, (OSError, FieldError))
+        _log.error("%s: %s: %s", target, type(error).__name__, error, exc_info=not expected)
+        raise web.HTTPInternalServerError(text=FAULT) from None
 
-    @web.middleware
-    async def in_time(request: web.Request, handler: Handler) -> web.StreamResponse:
-        try:
-            async with asyncio.timeout(ANSWER_S) as request[LIMIT]:
-                return await handler(request)
-        except TimeoutError:
-            raise web.HTTPRequestTimeout from None
 
-    async def add_headers(_: web.Request, response: web.StreamResponse) -> None:
-        response.headers.update({**HEADERS, "Content-Security-Policy": POLICY})
+@web.middleware
+async def _in_time(request: web.Request, handler: Handler) -> web.StreamResponse:
+    """Answer a request within ``ANSWER_S``."""
+    try:
+        async with asyncio.timeout(ANSWER_S) as request[LIMIT]:
+            return await handler(request)
+    except TimeoutError:
+        raise web.HTTPRequestTimeout from None
 
-    application.middlewares.extend((faults_to_log, in_time, own_pages_only))
-    application.on_response_prepare.append(add_headers)
+
+async def _add_headers(_: web.Request, response: web.StreamResponse) -> None:
+    response.headers.update({**HEADERS, "Content-Security-Policy": POLICY})
 
 
 def _split(address: str) -> SplitResult:
@@ -257,8 +270,11 @@ class LimitedServer:
         server = self._runner.server
         if server is None or self._server is None:  # accepted just before the server stopped
             return _Refusal()
-        transports = [connection.transport for connection in server.connections]
-        present = sum(t is not None and not t.is_closing() for t in transports)
+        present = 0
+        for connection in server.connections:
+            transport = connection.transport
+            if transport is not None and not transport.is_closing():
+                present += 1
         if present < self._most:
             return server()
         return _Refusal()

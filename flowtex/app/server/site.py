@@ -192,8 +192,9 @@ def serve_sessions(
     announce: Callable[[str], None],
 ) -> None:
     """Serve sessions until Ctrl-C; :func:`flowtex.app.serve` has the arguments and the errors."""
+    if limit is not None:
+        checked_number("limit", limit, 1, expected="1 or more pages", error=ServeError)
     for name, value, low, high, expected in (
-        ("limit", 1 if limit is None else limit, 1, math.inf, "1 or more pages"),
         ("port", port, 0, 65535, "0 to 65535"),
         ("idle", idle, math.ulp(0.0), math.inf, "a positive number of minutes"),
     ):

@@ -56,16 +56,27 @@ class ServedStore:
         zarr = import_extra("zarr", "store")
         group = described(levels.about)
         #: How many objects each array has along its axes.
-        self._counts: dict[str, tuple[int, ...]] = {
-            name: tuple(map(int, np.ceil(np.divide(array.shape, array.shards or array.chunks))))
-            for name, array in group.members(max_depth=None)
-            if isinstance(array, zarr.Array)
-        }
-        names = [f"{name}/{DOCUMENT}" for name, _ in group.members(max_depth=None)]
-        self._metadata = frozenset((DOCUMENT, *names))
+        self._counts: dict[str, tuple[int, ...]] = {}
+        documents = {DOCUMENT}
+        for name, node in group.members(max_depth=None):
+            documents.add(f"{name}/{DOCUMENT}")
+            if isinstance(node, zarr.Array):
+                counts = np.ceil(np.divide(node.shape, node.shards or node.chunks))
+                self._counts[name] = tuple(map(int, counts))
+        self._metadata = frozenset(documents)
 
     def _is_outside(self, path: Path) -> bool:
         return not Path(os.path.realpath(path)).is_relative_to(self._folder or "")
+
+    def _is_chunk(self, array: str, words: list[str]) -> bool:
+        """Return whether words are the numbers of an object of an array, along its axes."""
+        counts = self._counts.get(array, ())
+        if len(words) != len(counts):
+            return False
+        for word, count in zip(words, counts, strict=True):
+            if not _NUMBER.fullmatch(word) or int(word) >= count:
+                return False
+        return True
 
     async def get(self, name: str) -> bytes:
         """Return an object of the store.
@@ -79,12 +90,7 @@ class ServedStore:
         """
         array, _, rest = name.partition("/c/")
         words = rest.split("/")
-        counts = self._counts.get(array, ())
-        is_chunk = len(words) == len(counts) and all(
-            _NUMBER.fullmatch(word) and int(word) < count
-            for word, count in zip(words, counts, strict=True)
-        )
-        if not (is_chunk or name in self._metadata):
+        if not (self._is_chunk(array, words) or name in self._metadata):
             raise LookupError(name)
         if self._folder and self._is_outside(self._folder / name):
             raise LookupError(name)
@@ -143,11 +149,12 @@ def store_application(
             body = await served.get(name)
         except LookupError:
             raise web.HTTPNotFound(text="This object does not exist.") from None
-        metadata = name.endswith(DOCUMENT)
         headers = {
-            "Content-Type": "application/json" if metadata else "application/octet-stream",
-            "Cache-Control": "no-store" if metadata else f"private, max-age={KEPT_S}",
+            "Content-Type": "application/octet-stream",
+            "Cache-Control": f"private, max-age={KEPT_S}",
         }
+        if name.endswith(DOCUMENT):
+            headers = {"Content-Type": "application/json", "Cache-Control": "no-store"}
         return web.Response(body=body, headers=headers)
 
     async def to_page(request: web.Request) -> web.Response:

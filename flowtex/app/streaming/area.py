@@ -147,7 +147,7 @@ class FlowArea(AppearanceAttributes):
         self.show(read_field(mesh, reading), keep_view=True, keep_clim=True, keep_time=True)
 
     def ui(self, **attributes: Any) -> Any:
-        """Add the view to the open layout; ``attributes`` are those of the element."""
+        """Add the view to the open layout; ``attributes`` are attributes of the HTML element."""
         server = self.server
         server.enable_module(trame_rca.module)
         server.enable_module(
@@ -159,15 +159,14 @@ class FlowArea(AppearanceAttributes):
             }
         )
         attributes["style"] = "width: 100%; height: 100%; " + attributes.get("style", "")
+        for name in EVENTS:
+            take = getattr(self, f"take_{name}")
+            attributes[name] = (take, "[$event.value, $event.page, $event.place]")
         return _Client(
             "flowtex-client",
             ref=self.ref,
             begin=server.trigger_name(self.begin),
             read=server.trigger_name(self.points.read),
-            **{
-                name: (getattr(self, f"take_{name}"), "[$event.value, $event.page, $event.place]")
-                for name in EVENTS
-            },
             **attributes,
         )
 
@@ -281,12 +280,15 @@ class FlowArea(AppearanceAttributes):
             self.follow()
 
     def _send_changes(self) -> None:
+        """Send to the page what has changed since the last message."""
         self._due = None
         changes: Header = {}
         if self._handed != self._appearances():
             changes["scenes"] = self._hand_over()
         present = self._present()
-        changes |= {k: v for k, v in present.items() if v != self._sent.get(k)}
+        for name, value in present.items():
+            if value != self._sent.get(name):
+                changes[name] = value
         self._sent = present
         if changes:
             self.call("take", {**changes, "by": self._by})
@@ -302,24 +304,28 @@ class FlowArea(AppearanceAttributes):
         self.server.js_call(self.ref, method, *values)
 
     def _present(self) -> Header:
+        """Return the settings, the camera and the times that are shown."""
         viewport = self.viewport
+        camera = None
+        if not viewport.sees_all:
+            camera = viewport.camera.to_dict()
+        time_beside = None
+        if viewport.time_shift is None:
+            time_beside = viewport.time_beside
         return {
             "settings": dict(viewport.settings),
-            "camera": None if viewport.sees_all else viewport.camera.to_dict(),
+            "camera": camera,
             "time": viewport.handle.time,
-            "timeBeside": viewport.time_beside if viewport.time_shift is None else None,
+            "timeBeside": time_beside,
             "clock": viewport.clock,
             "playing": self.player.playing,
         }
 
     def _appearances(self) -> tuple[object, ...]:
-        return (
-            self.viewport.background,
-            self.names,
-            *(_appearance(pane) for pane in self.viewport.panes),
-        )
+        return (self.viewport.background, self.names, *map(_appearance, self.viewport.panes))
 
     def _hand_over(self) -> list[Header]:
+        """Give each pane's scene to the page, and return their headers."""
         viewport = self.viewport
         present = self._present()
         panes = viewport.panes
@@ -327,7 +333,8 @@ class FlowArea(AppearanceAttributes):
         for scene in self._scenes[len(panes) :]:
             scene.close()
         self._scenes = self._scenes[: len(panes)]
-        self._scenes += [HandedScene(self._routes) for _ in panes[len(self._scenes) :]]
+        while len(self._scenes) < len(panes):
+            self._scenes.append(HandedScene(self._routes))
         settings = {}
         for name, value in changes.items():
             if name in TABLE:
@@ -387,7 +394,9 @@ class FlowArea(AppearanceAttributes):
         """Show a time of the field."""
         checked = number(time, *map(float, self.viewport.field.times[[0, -1]]))
         if checked is not None and not self._is_late(place):
-            self.player.go_to(checked, page if isinstance(page, str) else "")
+            if not isinstance(page, str):
+                page = ""
+            self.player.go_to(checked, page)
 
     def take_clock(self, clock: object, page: object = "", place: object = None) -> None:
         """Show a moment of the streaming of a steady flow."""
@@ -437,6 +446,7 @@ class FlowArea(AppearanceAttributes):
             self.changed()
 
     def _on_ready(self, **_: object) -> None:
+        """Begin to send pictures once the server runs."""
         if self._tasks:  # a page can trigger this again
             return
         self.server.controller.rc_area_register(self.stream)
@@ -454,6 +464,7 @@ def _client_script(routes: Routes) -> str:
 
 
 def _appearance(pane: FlowHandle) -> tuple[object, ...]:
+    """Return what a browser cannot change by itself: all that its arrays depend on."""
     scene = pane.scene
     settings = scene.settings
     built = []

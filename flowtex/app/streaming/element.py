@@ -70,8 +70,9 @@ class HandedScene:
         }
 
     async def _content(self, source: TileSource, name: str) -> Content:
+        """Return the parts of a scene that a page requests by name, as a file."""
         place, *numbers = name.split(".")
-        steps = [int(number) for number in numbers]
+        steps = list(map(int, numbers))
         if place in (*PART_GROUPS, *MARK_PARTS.values()):
             kind = place
         else:
@@ -80,8 +81,9 @@ class HandedScene:
         if place != WHOLE and not kind:
             level, row, column = map(int, place.split(","))
             key = TileKey(level, row, column)
-        if not all(0 <= step < source.scene.steps for step in steps):
-            raise LookupError(name)
+        for step in steps:
+            if not 0 <= step < source.scene.steps:
+                raise LookupError(name)
         if place == WHOLE and steps:
             is_over = self._next_request()
         else:
@@ -173,6 +175,7 @@ class Player:
             self._reading = asyncio.create_task(self._read())
 
     async def _read(self) -> None:
+        """Trace the requested time in a thread, then show it; again while others are requested."""
         while (time := self._requested) is not None:
             fault = None
             field = self._viewport.field
@@ -184,9 +187,13 @@ class Player:
                 self._requested = None
             elif time == self._requested:
                 self._requested = None
-                self._stop(fault) if fault else self._show(time)
+                if fault:
+                    self._stop(fault)
+                else:
+                    self._show(time)
 
     def _show(self, time: float) -> None:
+        """Show a time, or the present one again if it cannot be drawn."""
         before = self._viewport.handle.time
         try:
             self._viewport.set_time(time)

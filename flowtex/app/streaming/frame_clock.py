@@ -56,7 +56,7 @@ class FrameClock:
     def acknowledge(self, page: str, number: int, shown: float) -> None:
         """Count a picture, and those before it, as shown by a page, in seconds of its clock."""
         sent, moving = self._on_way.get(number, (0.0, False))
-        self._on_way = {n: value for n, value in self._on_way.items() if n > number}
+        self._on_way = {later: value for later, value in self._on_way.items() if later > number}
         self._acknowledged.set()
         if not moving:
             return

@@ -92,6 +92,7 @@ class PointReader:
         return {}
 
     def _index(self, pane_number: int, request: Mapping[str, Any]) -> tuple[float, float] | None:
+        """Return the point (j, i) of a request, ``None`` where there is none."""
         pane = self._viewport.panes[pane_number]
         field = pane.field
         place = _numbers(request.get("place"), 2)
@@ -136,14 +137,16 @@ def _time_of(field: FlowField, asked: object, present: float) -> float:
 
 
 def _numbers(value: object, count: int) -> list[float] | None:
-    if isinstance(value, (list, tuple)):
-        items = [number(v) for v in value]
-    else:
-        items = []
-    numbers = [v for v in items if v is not None]
-    if len(numbers) == len(items) == count:
-        return numbers
-    return None
+    """Return a list of numbers that a page sends, ``None`` unless all are valid."""
+    if not isinstance(value, (list, tuple)) or len(value) != count:
+        return None
+    numbers = []
+    for item in value:
+        checked = number(item)
+        if checked is None:
+            return None
+        numbers.append(checked)
+    return numbers
 
 
 def values_of(point: PointValues, index: tuple[float, float]) -> Header:
@@ -188,6 +191,7 @@ def path_of(found: Probe, index: tuple[float, float], field: FlowField) -> Heade
 
 
 def _in_surface(found: Probe, field: FlowField) -> Floats:
+    """Return the velocity along the surface, of the whole speed."""
     point = found.field_values
     n = int(np.abs(found.path_lags).argmin())
     ends = found.path[max(n - 1, 0)], found.path[min(n + 1, len(found.path) - 1)]

@@ -13,7 +13,7 @@ import asyncio
 import io
 import logging
 import math
-from collections.abc import Callable, Generator, Iterator
+from collections.abc import Callable, Generator, Iterable, Iterator
 from contextlib import contextmanager
 
 import numpy as np
@@ -89,11 +89,15 @@ class ViewPainter:
         if not self.complete:
             width = max(round(width * scale), 16)
             height = max(round(height * scale), 16)
-        pictures = [self._quick(pane, width, height) for pane in panes]
+        first, *others = [self._quick(pane, width, height) for pane in panes]
         line = np.full((height, max(round(GAP_PX * scale), 1), 3), LINE_GREY, np.uint8)
-        return np.hstack([pictures[0], *(part for p in pictures[1:] for part in (line, p))])
+        columns = [first]
+        for picture in others:
+            columns += [line, picture]
+        return np.hstack(columns)
 
     def _quick(self, pane: FlowHandle, width: int, height: int) -> Bytes:
+        """Return a picture of a pane, with fewer samples where drawing is slow."""
         chosen = pane.settings.samples
         if not self.slow or chosen <= DRAFT_SAMPLES:
             return self._viewport.draw(width, height, pane=pane)
@@ -236,6 +240,7 @@ class FrameStream(AreaAdapter):
         return self._sized and self.streamer is not None and not self.paused and self.watched()
 
     async def _quick(self) -> Bytes:
+        """Send a quick picture, and return it."""
         self._wake.clear()
         started = self.clock.now()
         share = self.clock.share
@@ -247,6 +252,7 @@ class FrameStream(AreaAdapter):
         return picture
 
     async def _rests(self) -> bool:
+        """Return whether nothing changes for a while."""
         try:
             await asyncio.wait_for(self._wake.wait(), REST_S)
         except TimeoutError:
@@ -254,9 +260,13 @@ class FrameStream(AreaAdapter):
         return False
 
     async def _full(self, draft: Bytes) -> None:
+        """Send the full picture, and unfinished ones before where the connection is free."""
         looked = self.clock.now()
         picture = draft
-        for picture in () if self.painter.complete else self.painter.full(draft):
+        fuller: Iterable[Bytes] = ()
+        if not self.painter.complete:
+            fuller = self.painter.full(draft)
+        for picture in fuller:
             await asyncio.sleep(0)
             if self._wake.is_set():
                 return
@@ -273,7 +283,10 @@ class FrameStream(AreaAdapter):
         sharp = quality == REST_QUALITY
         loop = asyncio.get_running_loop()
         content = await loop.run_in_executor(None, encode, picture, quality)
-        await self.clock.until(0 if sharp else MOST_ON_WAY - 1)
+        if sharp:
+            await self.clock.until(0)
+        else:
+            await self.clock.until(MOST_ON_WAY - 1)
         if sharp and self._wake.is_set():
             return
         meta = {"type": "image/jpeg", "codec": "", "w": width, "h": height, "key": "key"}

@@ -100,7 +100,9 @@ class Viewport:
     def pane_size(self) -> tuple[int, int]:
         """Width and height of one pane, in pixels."""
         width, height = self.size
-        return (width if len(self.panes) == 1 else max((width - GAP_PX) // 2, 1)), height
+        if len(self.panes) > 1:
+            width = max((width - GAP_PX) // 2, 1)
+        return width, height
 
     @property
     def aspect(self) -> float:
@@ -139,12 +141,9 @@ class Viewport:
 
     def copy(self) -> Viewport:
         """Return a viewport with its own window that shows the same."""
-        if self.settings.noise == "image":
-            image = self.scene.image
-        else:
-            image = None
-        options = {**vars(self.scene.appearance), **dict(self.settings)}
-        options["image"] = None if image is None else as_image(image)
+        options = {**vars(self.scene.appearance), **dict(self.settings), "image": None}
+        if self.settings.noise == "image" and self.scene.image is not None:
+            options["image"] = as_image(self.scene.image)
         other = Viewport(self.field, **options)
         if self.differences:
             other.compare(self.differences)
@@ -338,7 +337,7 @@ class Viewport:
 
     @property
     def chosen_camera(self) -> Camera | None:
-        """The camera; ``None`` if it is that of :meth:`home`."""
+        """The camera; ``None`` for the camera of :meth:`home`."""
         if self.camera == self._home:
             return None
         return self.camera
@@ -406,8 +405,8 @@ class Viewport:
         passes = DeferredPasses.of(self.plotter.renderer)
         if part is not None:
             scale = width / across
-            corner = (left * scale, (high - top - down) * scale)
-            passes.part = PicturePart(*(round(n) for n in (*corner, wide * scale, high * scale)))
+            box = np.array([left, high - top - down, wide, high]) * scale
+            passes.part = PicturePart(*np.rint(box).astype(int).tolist())
         try:
             window.Render()
         finally:
@@ -433,7 +432,9 @@ class Viewport:
         wide = (width - (len(panes) - 1) * gap) // len(panes)
         for n, pane in enumerate(panes):
             first = n * (wide + gap)
-            view = canvas[:, first : first + wide if n < len(panes) - 1 else None]
+            view = canvas[:, first:]
+            if n < len(panes) - 1:
+                view = view[:, :wide]
             across = view.shape[1]
             self._set_picture(across * times, height * times)
             corners = product(range(0, height, side), range(0, across, side))

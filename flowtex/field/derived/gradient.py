@@ -92,7 +92,7 @@ def _has_vectors(points: Floats, projection: Projection, *, poles: bool) -> Bool
 def _on_sphere(
     gradient: NodeGradient, points: Floats, projection: Projection | None
 ) -> NodeGradient:
-    """Return a gradient at positions (J, I, 3) on the Earth with its exact normals."""
+    """Return a gradient at positions (J, I, 3) with the normals of the Earth, if it lies there."""
     if projection is None:
         return gradient
     parts = np.moveaxis(points, -1, 0)
@@ -139,8 +139,12 @@ class NodeGradient:
             along += _dot(parts, two) * two
         else:
             along = parts - _dot(parts, self.normal) * self.normal
-        change = self.derivative(along)
-        return np.asarray([[_dot(d, part) for part in change] for d in (one, two)])
+        change = self.derivative(along)  # (2, C, J, I)
+        gradient = np.empty((2, len(change), *change.shape[2:]))
+        for m, direction in enumerate((one, two)):
+            for n, part in enumerate(change):
+                gradient[m, n] = _dot(direction, part)
+        return gradient
 
 
 class PointLine(NamedTuple):
@@ -157,7 +161,9 @@ def point_lines(points: Floats) -> tuple[PointLine, ...]:
     found = []
     for axis in (0, 1):
         lines = np.moveaxis(points, axis, 0)
-        for line, beside in ((0, 1), (-1, -2)) if len(lines) > 2 else ():
+        if len(lines) <= 2:
+            continue
+        for line, beside in ((0, 1), (-1, -2)):
             weights = _weights_around(lines[line], lines[beside])
             if weights is not None:
                 found.append(PointLine(axis, line, beside, weights))
@@ -209,9 +215,7 @@ def _grid_gradient(
         for pole in poles:
             np.moveaxis(valid, pole.axis, 0)[pole.line] = False
 
-    turns = [turn if is_closed else None for turn, is_closed in zip(offset, periodic, strict=True)]
-    p_i = _difference(points, valid, 1, turns[1])
-    p_j = _difference(points, valid, 0, turns[0])
+    p_j, p_i = _differences(points, valid, offset, periodic)
     for pole in poles:  # it has the directions of the line beside it
         lines = np.moveaxis((p_i, p_j)[pole.axis], pole.axis + 1, 0)
         lines[pole.line] = lines[pole.beside]
@@ -237,13 +241,28 @@ def _grid_gradient(
     return NodeGradient(np.stack([one, two]), derivative, poles)
 
 
+def _differences(
+    nodal: Floats, valid: Bools, turns: Floats, periodic: tuple[bool, bool]
+) -> list[Floats]:
+    """Return differences along j and along i of values at nodes, (C, J, I) each.
+
+    ``turns`` are the differences (C,) between both ends of each axis, where it is periodic.
+    """
+    differences = []
+    for axis, is_closed in enumerate(periodic):
+        turn = None
+        if is_closed:
+            turn = turns[axis]
+        differences.append(_difference(nodal, valid, axis, turn))
+    return differences
+
+
 def _grid_derivative(
     valid: Bools, periodic: tuple[bool, bool], cells: Floats, nodal: Floats
 ) -> Floats:
     """Return derivatives (2, C, J, I) of values at nodes, (C, J, I), by the cells per length."""
-    turns = [np.zeros(len(nodal)) if is_closed else None for is_closed in periodic]
-    by_i = _difference(nodal, valid, 1, turns[1])
-    by_j = _difference(nodal, valid, 0, turns[0])
+    no_turns = np.zeros((2, len(nodal)))
+    by_j, by_i = _differences(nodal, valid, no_turns, periodic)
     by_j *= cells[2]
     by_j += by_i * cells[1]
     by_i *= cells[0]
@@ -323,19 +342,17 @@ def _triangle_gradient(surface: TriangleSurface, points: Floats, valid: Bools) -
     rows, columns = _near_nodes(surface)
     count = len(points)
     offset = points[columns] - points[rows]
-    x, y = (np.einsum("ec,ec->e", offset, d[rows]) for d in (one, two))
+    x = np.einsum("ec,ec->e", offset, one[rows])
+    y = np.einsum("ec,ec->e", offset, two[rows])
     degree = np.bincount(rows, minlength=count)
     size = np.sqrt(np.bincount(rows, x * x + y * y, count) / np.maximum(degree, 1))
     size[size == 0] = 1.0
-    x, y = x / size[rows], y / size[rows]
+    x /= size[rows]
+    y /= size[rows]
     terms = np.stack([x, y, x * x, x * y, y * y])
     terms[2:, degree[rows] < QUADRATIC_NEIGHBOURS] = 0.0
     weight = 1 / (x * x + y * y + 1e-2)
-    normal = np.empty((count, 5, 5))
-    for a in range(5):
-        for b in range(a, 5):
-            normal[:, a, b] = np.bincount(rows, weight * terms[a] * terms[b], count)
-            normal[:, b, a] = normal[:, a, b]
+    normal = _normal_matrices(rows, weight, terms, count)
     # Nodes on two lines only leave the quadratic terms open, and with them the linear ones.
     scale = np.sqrt(np.maximum(np.einsum("nkk->nk", normal), 1e-300))
     alike = _are_alike(normal / (scale[:, :, None] * scale[:, None]))
@@ -364,6 +381,16 @@ def _are_alike(correlations: Floats) -> Bools:
     return alike
 
 
+def _normal_matrices(rows: Indices, weight: Floats, terms: Floats, count: int) -> Floats:
+    """Return weighted sums of the products of terms (5, E) at nodes, (count, 5, 5)."""
+    normal = np.empty((count, 5, 5))
+    for a in range(5):
+        for b in range(a, 5):
+            normal[:, a, b] = np.bincount(rows, weight * terms[a] * terms[b], count)
+            normal[:, b, a] = normal[:, a, b]
+    return normal
+
+
 def _applied(operators: list[Any], nodal: Floats) -> Floats:
     columns = nodal[:, 0].T
     return np.stack([(operator @ columns).T[:, None] for operator in operators])
@@ -389,7 +416,7 @@ def _near_nodes(surface: TriangleSurface) -> tuple[Indices, Indices]:
 
 def _clockwise(one: Floats, two: Floats, points: Floats, valid: Bools) -> bool:
     """Return whether turning from the first direction to the second is negative."""
-    normal = np.stack([one[a] * two[b] - one[b] * two[a] for a, b in ((1, 2), (2, 0), (0, 1))])
+    normal = np.cross(one, two, axis=0)
     usable = valid & np.isfinite(normal).all(axis=0)
     if not usable.any():
         return False

@@ -1,8 +1,8 @@
 """Scalars that are computed from the velocity at the nodes.
 
-Magnitudes and components of vectors are scalars too, ``U`` and ``U_x`` of the vectors ``U``. The
-magnitude of a velocity, by its unit or else its name, is labelled as the speed, that of others
-``|B|``.
+Magnitudes and components of vectors are scalars too: vectors ``U`` have the scalars ``U`` and
+``U_x``. The magnitude of a velocity is labelled as the speed, the magnitude of other vectors as
+``|B|``. The unit of vectors, or else their name, shows whether they are a velocity.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ COMPONENT = re.compile(r"[_:.\[ -][xyz012]\]?$", re.IGNORECASE)
 LONG_NAMES = {"okubo_weiss": "Okubo-Weiss parameter", "ftle": "FTLE"}
 LETTERS = "xyz"  #: Letters of the components, along the axes of space.
 #: Component letter by its name, a number or a letter.
-COMPONENTS = {**dict(zip("012", LETTERS, strict=True)), **{x: x for x in LETTERS}}
+COMPONENTS = dict(zip("012xyz", 2 * LETTERS, strict=True))
 UNNAMED = "velocity"  #: Name of vectors that have none.
 #: Words of a velocity, also with a number or a letter of a component or a height.
 _VELOCITY = re.compile(
@@ -176,9 +176,10 @@ def is_velocity(name: str, unit: str = "") -> bool:
     """Return whether vectors are a velocity; without a name and a unit they are."""
     if unit.strip().lower() not in NONE and parsed(unit) is not None:
         return measures(unit, VELOCITIES)
+    if not name:
+        return True
     words = [word.lower() for word in _WORDS.findall(name)]
-    means = any(_VELOCITY.fullmatch(word) for word in words)
-    return not name or (means and not any(_OTHER.fullmatch(word) for word in words))
+    return any(map(_VELOCITY.fullmatch, words)) and not any(map(_OTHER.fullmatch, words))
 
 
 def magnitude_label(name: str, unit: str = "") -> str:
@@ -198,17 +199,14 @@ def component_name(name: str, axis: str) -> str:
 def with_vector_scalar(field: Any, name: str) -> Any:
     """Return a field with the magnitude or a component of its vectors among its scalars.
 
-    The names are those of the vectors that are drawn, ``speed`` for a component of these, and
-    those of other vectors of its mesh. For any other name the field is returned as it is.
+    Known are the drawn vectors by their name, their components also as in ``speed_x``, and other
+    vectors of the mesh. For any other name the field is returned as it is.
     """
     own = field.vectors or UNNAMED
     base, _, letter = name.rpartition("_")
     if base == "speed":
         base = own
-    parts = []
-    for n in field.parts:
-        if n.rpartition("_")[0] == name:
-            parts.append(n)
+    parts = [part for part in field.parts if part.rpartition("_")[0] == name]
     long_name = name
     unit = ""
     steps: Steps
@@ -231,13 +229,14 @@ def with_vector_scalar(field: Any, name: str) -> Any:
         long_name = f"|{name}|"
         if parts[0] in field.on_cells:
             on_cells = (name,)
-        else:
-            on_cells = ()
     else:
         return field
+    units = dict(field.units)
+    if unit:
+        units[name] = unit
     return field.same_flow(
         scalars={**field.scalars, name: steps},
         on_cells=(*field.on_cells, *on_cells),
-        units={**field.units, **({name: unit} if unit else {})},
+        units=units,
         long_names={**field.long_names, name: long_name},
     )

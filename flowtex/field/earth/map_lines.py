@@ -106,11 +106,15 @@ def _steps(lon: Floats, lat: Floats) -> tuple[float, float]:
     span = math.sqrt(height * width * math.cos(middle))
     # Meridians are closer to each other near a pole, and many of them would meet there.
     narrowest = max(math.cos(math.radians(float(np.abs(lat).max()))), 1e-3)
-    across, along = (
-        next((step for step in reversed(STEPS) if length <= MOST_LINES * step), STEPS[0])
-        for length in (span / narrowest, span)
-    )
-    return across, along
+    return _step_for(span / narrowest), _step_for(span)
+
+
+def _step_for(length: float) -> float:
+    """Return the smallest step in degrees with which few enough lines lie in a length."""
+    for step in reversed(STEPS):
+        if length <= MOST_LINES * step:
+            return step
+    return STEPS[0]
 
 
 def _places(projection: Projection, box: Floats | None) -> tuple[Floats, Floats]:
@@ -119,7 +123,12 @@ def _places(projection: Projection, box: Floats | None) -> tuple[Floats, Floats]
         lon, lat = np.meshgrid(np.arange(-180.0, 180.0), np.arange(-89.5, 90.0))
         return lon.ravel(), lat.ravel()
     count = LOOKS[projection.is_globe]
-    axes = [np.linspace(a, b, count if b > a else 1) for a, b in box.T]
+    axes = []
+    for low, high in box.T:
+        if high > low:
+            axes.append(np.linspace(low, high, count))
+        else:
+            axes.append(np.array([low]))
     points = np.stack(np.meshgrid(*axes), axis=-1).reshape(-1, 3)
     lon, lat = projection.lonlat(points)
     finite = np.isfinite(lon) & np.isfinite(lat)
@@ -136,7 +145,10 @@ def _grid_lines(
     length = steps[1 - kind]
     cells = np.unique(np.floor(degrees / step).astype(int))
     values = np.union1d(cells, cells + 1) * step
-    values = values[(values < 180) if kind == 0 else (np.abs(values) < 90)]
+    if kind == 0:
+        values = values[values < 180]
+    else:
+        values = values[np.abs(values) < 90]
     pieces = max(math.ceil(length / LONGEST_PIECE), FEWEST_PIECES)
     cells = np.unique(np.floor(along / length).astype(int)) * pieces
     marks = np.unique(cells[:, None] + np.arange(pieces + 1))

@@ -126,8 +126,10 @@ class Projection:
         """Central longitude in degrees, if a PROJ definition has one."""
         if self.is_globe or self.name in NAMES:
             return None
-        named = (p for p in self._operation.params if p.name.startswith(("Longitude of", "lon_0")))
-        return next((float(p.value) for p in named), None)
+        for parameter in self._operation.params:
+            if parameter.name.startswith(("Longitude of", "lon_0")):
+                return float(parameter.value)
+        return None
 
     @property
     def _operation(self) -> Any:
@@ -247,8 +249,9 @@ class Projection:
         lon, lat = inverse(x, y)
         finite = np.isfinite(lon) & np.isfinite(lat)
         if not finite.all():  # some lie on the outline, and by rounding outside it
-            inner = inverse(INSIDE * x, INSIDE * y)
-            lon, lat = (np.where(finite, a, b) for a, b in zip((lon, lat), inner, strict=True))
+            inner_lon, inner_lat = inverse(INSIDE * x, INSIDE * y)
+            lon = np.where(finite, lon, inner_lon)
+            lat = np.where(finite, lat, inner_lat)
             finite = np.isfinite(lon) & np.isfinite(lat)
         lon = np.where(finite, lon, np.nan)
         lat = np.where(finite, lat, np.nan)

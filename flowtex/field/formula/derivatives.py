@@ -60,10 +60,13 @@ def derivative(tree: Tree, name: str) -> Tree:
             changes = simple("*", rates[0], second), simple("*", first, rates[1])
             return simple("+", *changes)
         case "min" | "max":
-            is_first = ("<=" if operation == "min" else ">=", *parts)
-            if any(rates):
-                return ("where", is_first, *rates)
-            return 0.0
+            if not any(rates):
+                return 0.0
+            if operation == "min":
+                comparison = "<="
+            else:
+                comparison = ">="
+            return ("where", (comparison, *parts), *rates)
         case "where":
             if any(rates[1:]):
                 return ("where", parts[0], *rates[1:])
@@ -104,7 +107,8 @@ def _rules(operation: str) -> tuple[Tree, ...]:
 def filled(tree: Tree, trees: Mapping[str, Tree]) -> Tree:
     """Return a tree with other trees in place of some of its names."""
     if isinstance(tree, tuple):
-        return simple(tree[0], *(filled(part, trees) for part in tree[1:]))
+        operation, *parts = tree
+        return simple(operation, *[filled(part, trees) for part in parts])
     if isinstance(tree, str):
         return trees.get(tree, tree)
     return tree

@@ -62,8 +62,12 @@ class Parameter:
             When the value is no number, not between low and high, or these are not in order.
         """
         try:
-            value, *ends = map(float, (raw,) if is_number(raw) else raw)
-            low, high = ends or (sorted((0.0, 2 * value)) if value else (-1.0, 1.0))
+            if is_number(raw):
+                raw = (raw,)
+            value, *ends = map(float, raw)
+            if not ends:
+                ends = _default_ends(value)
+            low, high = ends
         except (TypeError, ValueError, OverflowError):
             value = low = high = np.nan
         if not (low <= value <= high and low < high and np.isfinite(high - low)):
@@ -72,6 +76,13 @@ class Parameter:
                 "as (0.2, 0, 1)"
             )
         return cls(value, float(low), float(high))
+
+
+def _default_ends(value: float) -> list[float]:
+    """Return the range of the slider of a parameter for which none is given."""
+    if value:
+        return sorted((0.0, 2 * value))
+    return [-1.0, 1.0]
 
 
 @dataclass(frozen=True)
@@ -102,7 +113,13 @@ class Expression:
         return cls(str(source), tree, lambda values: evaluate(tree, values))
 
     @classmethod
+    def all_of(cls, sources: Sequence[Any], names: Sequence[str]) -> tuple[Expression, ...]:
+        """Read several expressions of the same names."""
+        return tuple(cls.of(source, tuple(names)) for source in sources)
+
+    @classmethod
     def _function(cls, function: Callable[..., Any], names: tuple[str, ...]) -> Expression:
+        """Return the expression of a function whose arguments are some of the names."""
         text = getattr(function, "__name__", "function")
         try:
             inputs = tuple(inspect.signature(function).parameters)
@@ -111,7 +128,12 @@ class Expression:
         for name in inputs:
             if name not in names:
                 raise FieldError(f"the function {text} takes {name}; {near_names(name, names)}")
-        return cls(text, None, lambda values: function(**{name: values[name] for name in inputs}))
+
+        def values_of_function(values: Values) -> Any:
+            arguments = {name: values[name] for name in inputs}
+            return function(**arguments)
+
+        return cls(text, None, values_of_function)
 
 
 @dataclass(frozen=True, eq=False)
@@ -174,30 +196,36 @@ class Formula:
             coordinate, a parameter has the name of a coordinate, or an expression cannot be read.
         """
         places, defaults = _surface(surface)
-        if len(expressions) not in ((2, 3) if places else (2,)):
-            if places:
-                expected = "two, the rates of u and v, or three, the velocity along x, y and z"
-            else:
-                expected = "two, the rates of x and y"
+        if places:
+            most = 3
+            expected = "two, the rates of u and v, or three, the velocity along x, y and z"
+        else:
+            most = 2
+            expected = "two, the rates of x and y"
+        if not 2 <= len(expressions) <= most:
             raise FieldError(f"{len(expressions)} expressions are given; expected {expected}")
         for name, ends in ranges.items():
             if ends is not None and name not in defaults:
                 raise FieldError(
                     f"{name} has a range, but the coordinates here are {' and '.join(defaults)}"
                 )
-        if taken := [name for name in parameters if name in VARIABLES]:
-            raise FieldError(
-                f"{taken[0]} is a coordinate or the time; give the parameter another name"
-            )
+        for name in parameters:
+            if name in VARIABLES:
+                raise FieldError(
+                    f"{name} is a coordinate or the time; give the parameter another name"
+                )
         read = {name: Parameter.of(name, value) for name, value in parameters.items()}
         names = (*defaults, *read)
-        values = (*names, *("xyz" if places else ""), *("t" if timed else ""))
-        result = cls(
-            tuple(Expression.of(each, values) for each in expressions),
-            {name: _range(name, ranges[name] or defaults[name]) for name in defaults},
-            tuple(Expression.of(each, names) for each in places),
-            read,
-        )
+        variables = list(names)
+        if places:
+            variables += "xyz"
+        if timed:
+            variables += "t"
+        velocity = Expression.all_of(expressions, variables)
+        ends_by_name = {}
+        for name, default in defaults.items():
+            ends_by_name[name] = _range(name, ranges[name] or default)
+        result = cls(velocity, ends_by_name, Expression.all_of(places, names), read)
         gradient_trees(result)  # raises an error where it is too large
         return result
 
@@ -207,11 +235,19 @@ class Formula:
         return tuple(each.text for each in self.expressions)
 
     @property
+    def parameter_values(self) -> dict[str, float]:
+        """The value of each parameter."""
+        return {name: each.value for name, each in self.parameters.items()}
+
+    @property
     def title(self) -> str:
         """The expressions as one line."""
         if len(self.texts) == COMPONENTS:
             return f"({', '.join(self.texts)})"
-        return ", ".join(f"{n}' = {text}" for n, text in zip(self.ranges, self.texts, strict=True))
+        equations = []
+        for name, text in zip(self.ranges, self.texts, strict=True):
+            equations.append(f"{name}' = {text}")
+        return ", ".join(equations)
 
     def coordinates(self, shape: tuple[int, int]) -> tuple[Floats, Floats]:
         """Return evenly spaced coordinates of nodes, (J, I)."""
@@ -249,8 +285,7 @@ class Formula:
         return along
 
     def _named(self, u: Floats, v: Floats) -> Values:
-        numbers = {name: each.value for name, each in self.parameters.items()}
-        return numbers | dict(zip(self.ranges, (u, v), strict=True))
+        return self.parameter_values | dict(zip(self.ranges, (u, v), strict=True))
 
 
 def _values(expressions: tuple[Expression, ...], values: Values) -> Floats:
@@ -284,6 +319,7 @@ def _surface(surface: Any) -> tuple[tuple[Any, ...], Mapping[str, tuple[float, f
 
 
 def _range(name: str, ends: Any) -> tuple[float, float]:
+    """Return the ends of a coordinate, the lower one first."""
     try:
         low, high = map(float, ends)
     except (TypeError, ValueError, OverflowError):
@@ -297,19 +333,37 @@ def _range(name: str, ends: Any) -> tuple[float, float]:
 
 def rate_trees(formula: Formula) -> tuple[list[Tree], list[list[Tree]]]:
     """Return the trees of the rates and of the tangents; both are empty for functions."""
-    trees = [each.tree for each in formula.expressions if each.tree is not None]
-    places = [each.tree for each in formula.surface if each.tree is not None]
-    if len(trees) < len(formula.expressions) or len(places) < len(formula.surface):
+    trees = _trees_of(formula.expressions)
+    places = _trees_of(formula.surface)
+    if trees is None or places is None:
         return [], []
-    trees = [filled(tree, dict(zip("xyz", places, strict=False))) for tree in trees]
+    place_of = dict(zip("xyz", places, strict=False))
+    trees = [filled(tree, place_of) for tree in trees]
     tangents = []
     for name in formula.ranges:
         tangents.append([derivative(place, name) for place in places])
     if len(trees) == COMPONENTS:
-        along = [[simple("*", a, b) for a, b in zip(row, trees, strict=True)] for row in tangents]
-        trees = [simple("+", *row) for row in along]
+        trees = [_product(row, trees) for row in tangents]
     _check_sizes(trees, "a rate")
-    return trees, tangents if places else []
+    if not places:
+        return trees, []
+    return trees, tangents
+
+
+def _trees_of(expressions: Sequence[Expression]) -> list[Tree] | None:
+    """Return the trees of expressions; ``None`` if one is a function."""
+    trees = []
+    for each in expressions:
+        if each.tree is None:
+            return None
+        trees.append(each.tree)
+    return trees
+
+
+def _product(first: list[Tree], second: list[Tree]) -> Tree:
+    """Return the tree of the scalar product of two vectors."""
+    terms = [simple("*", a, b) for a, b in zip(first, second, strict=True)]
+    return simple("+", *terms)
 
 
 def gradient_trees(formula: Formula) -> list[Tree]:

@@ -72,7 +72,7 @@ def parse(text: str, names: Collection[str]) -> Tree:
 
 
 def evaluate(tree: Tree, values: Values) -> Any:
-    """Return the value of a tree, an array if its names have arrays."""
+    """Return the value of a tree for values of its names, which may be arrays."""
     if isinstance(tree, str):
         return values[tree]
     if not isinstance(tree, tuple):
@@ -107,6 +107,7 @@ class _Reader:
         self.names = {unicodedata.normalize("NFKC", name): name for name in names}
 
     def whole(self) -> Tree:
+        """Return the tree of the whole text."""
         if len(self.text) > MOST_LETTERS:
             raise FieldError(
                 f"the formula has {len(self.text)} characters; expected {MOST_LETTERS} at most"
@@ -130,6 +131,7 @@ class _Reader:
         raise FieldError(f"{problem}\n  {self.text}\n  {' ' * at}^")
 
     def tree(self, node: ast.expr, depth: int = 1) -> Tree:
+        """Return the tree of a node of Python's syntax."""
         if depth > MOST_DEPTH:
             raise RecursionError
 
@@ -148,31 +150,19 @@ class _Reader:
             case ast.UnaryOp(op=ast.UAdd()):
                 return inner(node.operand)
             case ast.BinOp(op=ast.Add() | ast.Sub() | ast.Mult()):
-                sign, parts = _SIGNS[type(node.op)], list[Tree]()
-                left: ast.expr = node
-                while isinstance(left, ast.BinOp) and _SIGNS.get(type(left.op)) == sign:
-                    part = inner(left.right)
-                    parts.append(("neg", part) if isinstance(left.op, ast.Sub) else part)
-                    left = left.left
-                return (sign, inner(left), *parts[::-1])
+                return self.chain(node, inner)
             case ast.BinOp(op=ast.Div() | ast.Pow()):
                 return (_SIGNS[type(node.op)], inner(node.left), inner(node.right))
             case ast.Compare(ops=[op], comparators=[right]) if type(op) in _COMPARISONS:
                 return (_COMPARISONS[type(op)], inner(node.left), inner(right))
             case ast.Call(func=ast.Name(id="Piecewise"), args=pairs):  # of sympy
-                result: Tree = float("nan")
-                for pair in reversed(pairs):
-                    match pair:
-                        case ast.Tuple(elts=[value, ast.Constant()]):
-                            result = inner(value)
-                        case ast.Tuple(elts=[value, holds]):
-                            result = ("where", inner(holds), inner(value), result)
-                return result
+                return self.piecewise(pairs, inner)
             case ast.Call(func=ast.Name(id=name), keywords=[]):
                 return self.call(name, node, inner)
         return self.fail("this is not allowed in a formula", node)
 
     def named(self, name: str, node: ast.expr) -> Tree:
+        """Return the tree of a name, or the number of a constant."""
         if name in self.names:
             return self.names[name]
         if name.lower() in CONSTANTS:
@@ -187,6 +177,30 @@ class _Reader:
             node,
         )
 
+    def chain(self, node: ast.BinOp, inner: Callable[[ast.expr], Tree]) -> Tree:
+        """Read a sum or a product with all its terms, as ``a - b + c``."""
+        sign = _SIGNS[type(node.op)]
+        parts: list[Tree] = []
+        left: ast.expr = node
+        while isinstance(left, ast.BinOp) and _SIGNS.get(type(left.op)) == sign:
+            part = inner(left.right)
+            if isinstance(left.op, ast.Sub):
+                part = ("neg", part)
+            parts.append(part)
+            left = left.left
+        return (sign, inner(left), *parts[::-1])
+
+    def piecewise(self, pairs: list[ast.expr], inner: Callable[[ast.expr], Tree]) -> Tree:
+        """Read pairs of a value and the condition under which it holds, the first one first."""
+        result: Tree = float("nan")
+        for pair in reversed(pairs):
+            match pair:
+                case ast.Tuple(elts=[value, ast.Constant()]):
+                    result = inner(value)
+                case ast.Tuple(elts=[value, holds]):
+                    result = ("where", inner(holds), inner(value), result)
+        return result
+
     def call(self, name: str, node: ast.Call, inner: Callable[[ast.expr], Tree]) -> Tree:
         """Read a function, also by the name that sympy gives it."""
         function = name.lower().replace("ceiling", "ceil")
@@ -196,6 +210,8 @@ class _Reader:
             self.fail(f"the function {name!r} does not exist; {near_names(name, FUNCTIONS)}", node)
         count = OPERATIONS[function][1]
         found = len(node.args)
-        if found != count if count else found < 2:
-            self.fail(f"{name} has {found} arguments; expected {count or 'two or more'}", node)
+        if count is None and found < 2:
+            self.fail(f"{name} has {found} arguments; expected two or more", node)
+        if count is not None and found != count:
+            self.fail(f"{name} has {found} arguments; expected {count}", node)
         return (function, *map(inner, node.args))

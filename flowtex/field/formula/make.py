@@ -175,7 +175,7 @@ def _grid_shape(flow: Formula, resolution: int | None) -> tuple[int, int]:
         count = checked_count("resolution", resolution, 2, MOST_NODES, expected=expected)
     if flow.surface:
         return count, count
-    width, height = (high - low for low, high in flow.ranges.values())
+    width, height = np.ptp(list(flow.ranges.values()), axis=1).tolist()
     longest = max(width, height)
     fewest = min(count, LEAST_NODES)
     rows = max(round((count - 1) * height / longest) + 1, fewest)
@@ -229,9 +229,13 @@ def _times(times: ArrayLike) -> Floats:
 
 def _closed(points: Floats) -> str:
     """Return the axes whose first and last lines of nodes (J, I) coincide."""
-    size = np.ptp(points, axis=(0, 1)).max() * SAME_PLACE
-    ends = {"j": points[-1] - points[0], "i": points[:, -1] - points[:, 0]}
-    return "".join(axis for axis, gap in ends.items() if np.abs(gap).max() < size)
+    least = np.ptp(points, axis=(0, 1)).max() * SAME_PLACE
+    closed = ""
+    if np.abs(points[-1] - points[0]).max() < least:
+        closed += "j"
+    if np.abs(points[:, -1] - points[:, 0]).max() < least:
+        closed += "i"
+    return closed
 
 
 def is_line(text: str) -> bool:
@@ -252,7 +256,8 @@ def line_arguments(line: str) -> tuple[list[str], dict[str, Any]]:
     for part in line.split(";"):
         match = _NAMED.match(part)
         if match is None:
-            expressions += [part.strip()] if part.strip() else []
+            if part.strip():
+                expressions.append(part.strip())
         elif match[1] == "surface":
             named["surface"] = match[2].strip()
         else:
@@ -262,7 +267,10 @@ def line_arguments(line: str) -> tuple[list[str], dict[str, Any]]:
                 raise FieldError(
                     f"{match[1]} is {match[2].strip()!r}; expected {error} separated by commas"
                 ) from error
-            named[match[1]] = values if len(values) > 1 else values[0]
+            if len(values) == 1:
+                named[match[1]] = values[0]
+            else:
+                named[match[1]] = values
     if isinstance(times := named.pop("t", None), tuple) and len(times) == 3:
         first, last, count = times
         named["times"] = np.linspace(first, last, int(min(max(count, 2), MOST_TIMES)))
@@ -271,11 +279,12 @@ def line_arguments(line: str) -> tuple[list[str], dict[str, Any]]:
             "t is the time; expected the first time, the last, and their number, such as t=0,10,41"
         )
     allowed = ("x", "y", "u", "v", "surface", "times")
-    if taken := [n for n in ("resolution", "name") if n in named]:
-        raise FieldError(
-            f"{taken[0]} cannot be the name of a parameter; expected another name, or one of "
-            f"{', '.join(allowed)}"
-        )
+    for reserved in ("resolution", "name"):
+        if reserved in named:
+            raise FieldError(
+                f"{reserved} cannot be the name of a parameter; expected another name, or one of "
+                f"{', '.join(allowed)}"
+            )
     return expressions, named
 
 
@@ -299,6 +308,11 @@ def with_parameter(line: str, field: FlowField, name: str, value: float) -> str:
     if field.formula is None or name not in field.formula.parameters:
         return line
     parameter = field.formula.parameters[name]
-    others = [p.strip() for p in line.split(";") if (m := _NAMED.match(p)) is None or m[1] != name]
+    parts = []
+    for part in line.split(";"):
+        match = _NAMED.match(part)
+        if match is None or match[1] != name:
+            parts.append(part.strip())
     value = min(max(value, parameter.low), parameter.high)
-    return "; ".join([*others, f"{name}={value!r},{parameter.low!r},{parameter.high!r}"])
+    parts.append(f"{name}={value!r},{parameter.low!r},{parameter.high!r}")
+    return "; ".join(parts)

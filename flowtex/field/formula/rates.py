@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Sequence
 
 import numpy as np
@@ -18,15 +19,15 @@ WEIGHTS = ((-2, 1 / 12), (-1, -2 / 3), (1, 2 / 3), (2, -1 / 12))
 class Rates:
     """The rates of both coordinates; places are (N, 2).
 
-    Functions have no trees, so their gradient is that of differences of fourth order. A velocity in
-    space gives the rates times the metric of the surface, which vanish at the same places.
+    Functions have no trees, so their gradient is computed by differences of fourth order. For a
+    velocity in space, the rates are multiplied by the metric of the surface: the zeros stay.
     """
 
     def __init__(self, formula: Formula, time: float) -> None:
         self._formula = formula
         self._time = time
         self.ends = np.array(list(formula.ranges.values()))
-        self._values = {name: each.value for name, each in formula.parameters.items()} | {"t": time}
+        self._values = formula.parameter_values | {"t": time}
         self.trees, self._tangents = rate_trees(formula)
         self._gradient = gradient_trees(formula)
 
@@ -48,8 +49,9 @@ class Rates:
             return self._of(self._gradient, places).reshape(-1, 2, 2)
         steps = FUNCTION_SHARE * np.diag(np.ptp(self.ends, axis=1))
         sides = []
-        for h in steps:
-            sides.append(sum(w * self.at(places + n * h) for n, w in WEIGHTS) / h.sum())
+        for step in steps:
+            weighted = [weight * self.at(places + n * step) for n, weight in WEIGHTS]
+            sides.append(sum(weighted) / step.sum())
         return np.stack(sides, axis=-1)
 
     def positions(self, places: Floats) -> Floats:
@@ -61,7 +63,8 @@ class Rates:
         """Return the derivatives of the position along the coordinates, (N, 2, 3)."""
         if not self._tangents:
             return np.broadcast_to(np.eye(2, 3), (len(places), 2, 3))
-        return self._of([each for row in self._tangents for each in row], places).reshape(-1, 2, 3)
+        trees = list(itertools.chain.from_iterable(self._tangents))
+        return self._of(trees, places).reshape(-1, 2, 3)
 
     def area(self, places: Floats) -> Floats:
         """Return the area of a unit of both coordinates, (N,)."""

@@ -12,7 +12,7 @@ from flowtex.field.triangles.sharp_edges import SHARP_EDGE
 def has_creases(points: Floats, cells: Bools, closes: tuple[bool, bool]) -> bool:
     """Return whether a line of sides at which neighbouring cells lie at a sharp angle parts faces.
 
-    Two such sides at a node are a line, or one that begins at the border. A single one between
+    Two such sides at a node, or one at the border, are a line. A single side between
     other nodes ends in a surface that goes around it.
 
     Parameters

@@ -58,7 +58,10 @@ def close_axes(
         lines = np.swapaxes(points, 0, axis)
         if periodic is None:
             known = np.swapaxes(valid, 0, axis)[..., None]
-            close, line = find_closure(lines if known.all() else np.where(known, lines, np.nan))
+            known_lines = lines
+            if not known.all():
+                known_lines = np.where(known, lines, np.nan)
+            close, line = find_closure(known_lines)
         elif letter in periodic:
             close, line = _requested_closure(lines, np.swapaxes(velocity, 1, axis + 1))
         else:
@@ -69,7 +72,10 @@ def close_axes(
             points = np.swapaxes(np.concatenate([lines, line]), 0, axis)
             velocity = _repeat_first(velocity, axis + 1)
             valid = _repeat_first(valid, axis)
-            scalars = {k: _repeat_first(s, axis + 1) for k, s in scalars.items()}
+            closed_scalars = {}
+            for name, values in scalars.items():
+                closed_scalars[name] = _repeat_first(values, axis + 1)
+            scalars = closed_scalars
         elif close:
             _join_ends(velocity, valid, axis)
     return points, velocity, valid, scalars, (closed[0], closed[1])
@@ -83,7 +89,10 @@ def find_closure(points: Floats) -> tuple[bool, Floats | None]:
     finite = finite_nodes(points)
     if not finite.any() or len(points) < 3:
         return False, None
-    low, high = bounds(points if finite.all() else points[finite])
+    if finite.all():
+        low, high = bounds(points)
+    else:
+        low, high = bounds(points[finite])
     extent = float(np.linalg.norm(high - low))
     if extent == 0.0:
         return False, None
@@ -165,7 +174,9 @@ def _longitude(points: Floats) -> tuple[bool, Floats | None] | None:
     same = np.ptp(x, axis=1).max() <= 1e-6 * 360
     if not (same and np.abs(y).max() <= 90.01 and np.ptp(y) > 0):
         return None
-    return True, None if repeats else 2 * points[-1:] - points[-2:-1]
+    if repeats:
+        return True, None
+    return True, 2 * points[-1:] - points[-2:-1]
 
 
 def _repeat_first(a: A, axis: int) -> A:
@@ -206,58 +217,136 @@ def grid_nodes(
         When shapes or types do not fit together, values exceed the range of computations, or fewer
         nodes than a surface needs have data. The error lists all faults.
     """
-    if not isinstance(scalars, Mapping):
-        raise FieldError(
-            f"scalars is a {type(scalars).__name__}; expected a mapping of arrays by name"
-        )
+    _check_mapping(scalars)
     p, masked_points = as_numbers("points", node_positions(points))
     v, masked_velocity = as_numbers("velocity", first_step(velocity))
-    late = {name: steps for name, steps in scalars.items() if isinstance(steps, LazySteps)}
-    in_memory = {k: with_gaps(f"scalars[{k!r}]", s) for k, s in scalars.items() if k not in late}
-    on_cells = {k: with_gaps(f"cell_scalars[{k!r}]", s) for k, s in cell_scalars.items()}
-    mask = None if valid is None else with_gaps("valid", valid)
-    count = len(velocity) if isinstance(velocity, LazySteps) or v.ndim == 4 else 1
+    late, in_memory = _late_and_in_memory(scalars)
+    on_cells = _with_gaps_by_name("cell_scalars", cell_scalars)
+    mask = None
+    if valid is not None:
+        mask = with_gaps("valid", valid)
+    count = _step_count(velocity, v)
     faults = shape_faults(p, v, count, times, mask, periodic, in_memory)
     cells = tuple(max(n - 1, 0) for n in p.shape[:2])
     faults = faults or cell_faults(cells, count, on_cells, scalars)
-    if sign_free and v.ndim == 4 and len(v) > 1:
-        faults.append(
-            f"sign_free is True, but velocity has {len(v)} time steps; a sign-free field has no "
-            "paths in time: give one step, as in velocity[-1], or make one field for each"
-        )
+    if sign_free:
+        faults += _time_faults(v)
     raise_faults(faults)
-    v = v[None] if v.ndim == 3 else v
+    if v.ndim == 3:
+        v = v[None]
     # Arguments are copied once, and not changed.
-    p = three_components(p) if p.shape[-1] == 2 else p.copy("C")
-    v = three_components(v) if v.shape[-1] == 2 else v.copy("C")
-    ok = finite_nodes(p) & ~masked_points
-    ok &= finite_nodes(v) & ~masked_velocity
-    if mask is not None:
-        ok &= np.nan_to_num(mask) != 0
-    # Fill values must not take part in computations.
-    v[:, ~ok] = np.nan
-    raise_faults(range_faults(p, v, ok) or node_faults(p, ok))
-    p[~known_positions(p, ok)] = np.nan
-    v = with_equal_ends(v) if sign_free else v
-    data = {key: scalar_steps(values, p.shape[:2]) for key, values in in_memory.items()}
-    for key, values in on_cells.items():
-        ends = ((0, 0), (0, 1), (0, 1))
-        data[key] = np.pad(scalar_steps(values, cells), ends, constant_values=np.nan)
+    p = _copied_in_space(p)
+    v = _copied_in_space(v)
+    ok = _usable_nodes(p, v, ~(masked_points | masked_velocity), mask)
+    if sign_free:
+        v = with_equal_ends(v)
     shape = p.shape[:2]
+    data: dict[str, Any] = _scalars_of_nodes(in_memory, on_cells, shape)
     p, v, ok, data, closed = close_axes(p, v, ok, data, periodic)
     surface = GridSurface(p, ok, closed, on_globe=on_globe)
     if sign_free:
         v = oriented(np.where(ok[..., None], v[0], 0.0), ok, closed)
         v = with_equal_ends(v[None], closed, surface.poles)
     v[:, ~ok] = 0.0
-    closed_as_nodes = partial(_closed, [n > m for n, m in zip(ok.shape, shape, strict=True)])
-    moving = partial(_moving, ok, closed_as_nodes)
-    steps = velocity.map(moving) if isinstance(velocity, LazySteps) else v
-    read = {name: scalar.map(closed_as_nodes) for name, scalar in late.items()}
-    ordered = {name: {**data, **read}[name] for name in (*scalars, *on_cells)}
+    closed_as_nodes = partial(_closed, np.greater(ok.shape, shape).tolist())
+    steps: Any = v
+    if isinstance(velocity, LazySteps):
+        steps = velocity.map(partial(_moving, ok, closed_as_nodes))
+    all_scalars = data | _mapped(late, closed_as_nodes)
+    ordered = {name: all_scalars[name] for name in (*scalars, *on_cells)}
     nodes: dict[str, Any] = {"points": surface.points, "has_position": surface.has_position}
     nodes |= {"velocity": steps, "valid": ok, "periodic": closed, "scalars": ordered}
     return surface, nodes
+
+
+def _time_faults(v: Floats) -> list[str]:
+    """Return the fault of a sign-free velocity, (J, I, C), that has several time steps."""
+    if v.ndim < 4 or len(v) == 1:
+        return []
+    return [
+        f"sign_free is True, but velocity has {len(v)} time steps; a sign-free field has no "
+        "paths in time: give one step, as in velocity[-1], or make one field for each"
+    ]
+
+
+def _mapped(
+    scalars: Mapping[str, LazySteps], function: Callable[[Floats], Floats]
+) -> dict[str, Any]:
+    """Return scalars to which a function is applied when they are read."""
+    return {name: steps.map(function) for name, steps in scalars.items()}
+
+
+def _usable_nodes(p: Floats, v: Floats, shown: Bools, mask: Floats | None) -> Bools:
+    """Return the nodes with data, (J, I); elsewhere values become NaN in place.
+
+    ``shown`` are the nodes that no masked array hides, and ``mask`` is 0 where a user has none.
+    """
+    ok: Bools = finite_nodes(p) & finite_nodes(v) & shown
+    if mask is not None:
+        ok &= np.nan_to_num(mask) != 0
+    # Fill values must not take part in computations.
+    v[:, ~ok] = np.nan
+    raise_faults(range_faults(p, v, ok) or node_faults(p, ok))
+    p[~known_positions(p, ok)] = np.nan
+    return ok
+
+
+def _step_count(velocity: Any, first: Floats) -> int:
+    """Return the number of time steps of a velocity, whose first steps are read."""
+    if isinstance(velocity, LazySteps) or first.ndim == 4:
+        return len(velocity)
+    return 1
+
+
+def _check_mapping(scalars: object) -> None:
+    """Check that scalars have names."""
+    if not isinstance(scalars, Mapping):
+        raise FieldError(
+            f"scalars is a {type(scalars).__name__}; expected a mapping of arrays by name"
+        )
+
+
+def _with_gaps_by_name(argument: str, scalars: Mapping[str, Any]) -> dict[str, Floats]:
+    """Return the values of the scalars of an argument, NaN where they are masked."""
+    values = {}
+    for name, given in scalars.items():
+        values[name] = with_gaps(f"{argument}[{name!r}]", given)
+    return values
+
+
+def _late_and_in_memory(
+    scalars: Mapping[str, Any],
+) -> tuple[dict[str, LazySteps], dict[str, Floats]]:
+    """Return the scalars that are read later, and the values of the others."""
+    late = {}
+    given = {}
+    for name, values in scalars.items():
+        if isinstance(values, LazySteps):
+            late[name] = values
+        else:
+            given[name] = values
+    return late, _with_gaps_by_name("scalars", given)
+
+
+def _copied_in_space(vectors: Floats) -> Floats:
+    """Return a copy of vectors (..., 2 or 3) that has three components."""
+    if vectors.shape[-1] == 2:
+        return three_components(vectors)
+    return vectors.copy("C")
+
+
+def _scalars_of_nodes(
+    nodal: Mapping[str, Floats], on_cells: Mapping[str, Floats], shape: tuple[int, int]
+) -> dict[str, Floats]:
+    """Return scalars at all nodes, (T or 1, J, I), those of cells at their first corners."""
+    scalars = {}
+    for name, values in nodal.items():
+        scalars[name] = scalar_steps(values, shape)
+    for name, values in on_cells.items():
+        at_cells = scalar_steps(values, (shape[0] - 1, shape[1] - 1))
+        last_line = ((0, 0), (0, 1), (0, 1))
+        scalars[name] = np.pad(at_cells, last_line, constant_values=np.nan)
+    return scalars
 
 
 def _closed(appended: Sequence[bool], step: Floats) -> Floats:
@@ -370,7 +459,8 @@ def neighbour_pairs(shape: tuple[int, ...], periodic: tuple[bool, bool]) -> Indi
     pairs = [(number[:, :-1], number[:, 1:]), (number[:-1], number[1:])]
     pairs += [(number[:, :1], number[:, -1:])] * periodic[1]
     pairs += [(number[:1], number[-1:])] * periodic[0]
-    return np.concatenate([np.stack([a.ravel(), b.ravel()], axis=1) for a, b in pairs])
+    flat_pairs = [np.stack([first.ravel(), second.ravel()], axis=1) for first, second in pairs]
+    return np.concatenate(flat_pairs)
 
 
 def _tree(graph: scipy.sparse.csr_array, valid: Bools) -> Indices:

@@ -136,14 +136,10 @@ class GridSurface(NodeSurface):
 
     def triangle_at(self, index: Floats) -> tuple[Floats, int, Floats] | None:
         """Return a position (j, i) within one period, its drawn triangle, and shares of corners."""
-        j, i = (float(x) for x in self.wrap(index[::-1])[::-1])
+        i, j = map(float, self.wrap(index[::-1]))
         rows, columns = self.shape
-        # On a line of nodes a position belongs to two cells.
-        cells = [
-            {min(int(x), n - 2), max(math.ceil(x) - 1, 0)} for x, n in ((j, rows), (i, columns))
-        ]
         inside = 0 <= j <= rows - 1 and 0 <= i <= columns - 1
-        for row, column in product(*(sorted(choice, reverse=True) for choice in cells)):
+        for row, column in product(_cells_at(j, rows), _cells_at(i, columns)):
             if inside and self.cells[row, column]:
                 b = j - row
                 a = i - column
@@ -206,7 +202,10 @@ class GridSurface(NodeSurface):
         """
         inverse = np.zeros(self.shape)
         lengths = np.sqrt(np.einsum("djic,djic->dji", self.tangents, self.tangents))
-        typical = float(np.median(lengths if self.valid.all() else lengths[:, self.valid])) or 1.0
+        known = lengths
+        if not self.valid.all():
+            known = lengths[:, self.valid]
+        typical = float(np.median(known)) or 1.0
         for pole in self.poles or ():
             near = np.maximum(
                 1 - np.abs(np.arange(self.shape[1 - pole.component]) - pole.line) / POLE_LINES, 0
@@ -224,8 +223,9 @@ class GridSurface(NodeSurface):
 
     def node_near(self, index: Sequence[float]) -> tuple[int, int]:
         """Return the node (j, i) next to a position (j, i)."""
-        j, i = (min(round(float(x)), n - 1) for x, n in zip(index, self.shape, strict=True))
-        return j, i
+        j, i = index
+        rows, columns = self.shape
+        return min(round(float(j)), rows - 1), min(round(float(i)), columns - 1)
 
     def wrap(self, index: Floats) -> Floats:
         """Return positions in index space, (..., 2) as (i, j), within one period and the poles."""
@@ -274,17 +274,15 @@ class CubicMap:
         known = np.pad(surface.has_position, 1, mode="edge")
         by_i = np.diff(nodes, 2, axis=2) * (known[:, 2:] & known[:, 1:-1] & known[:, :-2])
         by_j = np.diff(nodes, 2, axis=1) * (known[2:] & known[1:-1] & known[:-2])
-        parts = (nodes[:, 1:-1, 1:-1], by_i[:, 1:-1], by_j[:, :, 1:-1])
+        by_both = np.diff(by_i, 2, axis=1)
         #: Nodes, and their second differences by i, by j, and by both, (C, J * I) each.
-        self._parts: list[AnyArray] = [
-            np.ascontiguousarray(part, dtype).reshape(len(frame), -1)
-            for part in (*parts, np.diff(by_i, 2, axis=1))
-        ]
+        self._parts: list[AnyArray] = []
+        for part in (nodes[:, 1:-1, 1:-1], by_i[:, 1:-1], by_j[:, :, 1:-1], by_both):
+            self._parts.append(np.ascontiguousarray(part, dtype).reshape(len(frame), -1))
         #: Greatest effects of the second differences, (C,) each.
-        self._most = [
-            np.abs(part).max(axis=1, initial=0) * most
-            for part, most in zip(self._parts[1:], (1 / 8, 1 / 8, 1 / 64), strict=True)
-        ]
+        self._most: list[AnyArray] = []
+        for part, most in zip(self._parts[1:], (1 / 8, 1 / 8, 1 / 64), strict=True):
+            self._most.append(np.abs(part).max(axis=1, initial=0) * most)
 
     @property
     def nodes(self) -> AnyArray:
@@ -323,11 +321,10 @@ class CubicMap:
         shares = (a, b, a * b)
         result = np.empty((len(self.nodes), len(at)), s.dtype)
         for c, out in enumerate(result):
-            bends = [
-                (part[c], share)
-                for part, share, most in zip(self._parts[1:], shares, self._most, strict=True)
-                if most[c] > error
-            ]
+            bends = []
+            for part, share, most in zip(self._parts[1:], shares, self._most, strict=True):
+                if most[c] > error:
+                    bends.append((part[c], share))
             corners = []
             for first in (0, 1, self._shape[1], self._shape[1] + 1):
                 value = self.nodes[c, first:].take(at, mode="clip")
@@ -374,10 +371,15 @@ def _over(ring: Floats, pole: Pole) -> Floats:
     k, s = np.divmod(opposite, 1.0)
     first = k.astype(np.intp)
     nodes = ring[1:-2]
-    line = sum(
-        w[:, None] * nodes[(first + a - 1) % pole.cells] for a, w in enumerate(cubic_weights(s))
-    )
-    return np.asarray(line)[np.arange(-1, pole.cells + 2) % pole.cells]
+    line = np.zeros((pole.cells, 3))
+    for n, weights in enumerate(cubic_weights(s)):
+        line += weights[:, None] * nodes[(first + n - 1) % pole.cells]
+    return line[np.arange(-1, pole.cells + 2) % pole.cells]
+
+
+def _cells_at(position: float, lines: int) -> list[int]:
+    """Return the cells along an axis at a position: two at a line of nodes, the later one first."""
+    return sorted({min(int(position), lines - 2), max(math.ceil(position) - 1, 0)}, reverse=True)
 
 
 def _beyond(p: Floats, good: Bools) -> Floats:

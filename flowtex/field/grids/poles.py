@@ -147,7 +147,9 @@ class Poles:
     lines: int
 
     def __iter__(self) -> Iterator[Pole]:
-        return (pole for pole in (self.first, self.last) if pole is not None)
+        for pole in (self.first, self.last):
+            if pole is not None:
+                yield pole
 
     @property
     def both(self) -> bool:
@@ -190,16 +192,19 @@ class Poles:
         return outside
 
     def _outside(self, position: AnyArray) -> Bools:
+        """Return which positions (2, N) lie beyond a pole, (N,)."""
         across = position[self.component]
         if self.both:
             return np.asarray((across < 0) | (across > self.lines - 1))
-        return np.asarray(across < 0 if self.first is not None else across > self.lines - 1)
+        if self.first is not None:
+            return np.asarray(across < 0)
+        return np.asarray(across > self.lines - 1)
 
 
 def find_poles(
     points: Floats, usable: Bools, valid: Bools, periodic: tuple[bool, bool]
 ) -> Poles | None:
-    """Find the poles of nodes (J, I, 3); one that is not ``valid`` is a hole."""
+    """Find the poles of nodes (J, I, 3); where a pole is not ``valid`` there is a hole."""
     if periodic[0] == periodic[1]:
         return None
     if periodic[1]:
@@ -249,4 +254,7 @@ def _pole(line: Floats, ring: Floats, component: int, at: int) -> Pole | None:
     turned = np.diff(np.unwrap(np.arctan2(rays[:, 1], rays[:, 0])))
     if not ((turned > 0).all() and abs(turned.sum() - 2 * np.pi) < 1):
         return None
-    return Pole(component, at, -1 if at else 1, plane, rays)
+    inward = 1
+    if at:
+        inward = -1
+    return Pole(component, at, inward, plane, rays)

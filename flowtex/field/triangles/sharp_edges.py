@@ -121,9 +121,9 @@ def split_nodes(points: Floats, triangles: Indices) -> tuple[Indices, Indices]:
 
 
 def _in_noise(nodes: Indices, ends: Indices, count: int) -> Bools:
-    """Return which nodes (count,) lie in noise, from those of all faces, (F,), and of sharp edges.
+    """Return which nodes (count,) lie in noise: many tips are there, or sharp edges end soon.
 
-    There, sharp edges, whose nodes are (2, E), meet in many tips, or end after a few nodes.
+    ``nodes`` are the nodes of all faces, (F,), and ``ends`` the nodes of sharp edges, (2, E).
     """
     is_tip = np.bincount(nodes, minlength=count) >= NOISE_FACES
     if np.count_nonzero(is_tip) <= MOST_TIPS:

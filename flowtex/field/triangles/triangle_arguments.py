@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from flowtex._util.array_types import Bools, Floats, Indices
+from flowtex._util.array_types import AnyArray, Bools, Floats, Indices
 from flowtex.errors import FieldError, notify, raise_faults
 from flowtex.field.steps import LazySteps, Steps, first_step, map_steps
 from flowtex.field.triangles.triangle_nodes import (
@@ -59,58 +59,88 @@ def triangle_nodes(
     """
     p, masked_points = as_numbers("points", points)
     v, masked = as_numbers("velocity", first_step(velocity))
-    try:
-        corners = np.asarray(triangles)
-    except ValueError as error:
-        raise FieldError(
-            f"triangles is not an array ({error}); expected three node numbers in every row"
-        ) from error
-    mask = None if valid is None else np.nan_to_num(with_gaps("valid", valid)) != 0
-    arrays = {name: with_gaps(f"scalars[{name!r}]", first_step(s)) for name, s in scalars.items()}
-    on_cells = {
-        k: with_gaps(f"cell_scalars[{k!r}]", first_step(s)) for k, s in cell_scalars.items()
-    }
-    count = len(velocity) if v.ndim == 3 or isinstance(velocity, LazySteps) else 1
+    corners = _corners_of(triangles)
+    mask = None
+    if valid is not None:
+        mask = np.nan_to_num(with_gaps("valid", valid)) != 0
+    arrays = _first_values("scalars", scalars)
+    on_cells = _first_values("cell_scalars", cell_scalars)
+    count = 1
+    if v.ndim == 3 or isinstance(velocity, LazySteps):
+        count = len(velocity)
     faults = _faults(p, corners, v, count, times, mask, arrays)
     raise_faults(faults or cell_faults((len(corners),), count, on_cells, scalars))
     p = three_components(p)
     v = three_components(v)
-    v = (v[None] if v.ndim == 2 else v)[:, None]  # (T, 1, N, 3)
-    finite = finite_nodes(p[None])[0] & ~masked_points & finite_nodes(v)[0] & ~masked
-    ok: Bools = np.asarray(finite if mask is None else finite & mask)
-    v = np.asarray(np.where(ok[:, None], v, np.nan))
+    v = v.reshape(-1, 1, len(p), 3)
+    ok: Bools = finite_nodes(p[None])[0] & ~masked_points & finite_nodes(v)[0] & ~masked
+    if mask is not None:
+        ok = ok & mask
+    v = np.where(ok[:, None], v, np.nan)
     raise_faults(range_faults(p[None], v, ok[None]))
     steps: Steps = v
     if isinstance(velocity, LazySteps):
         steps = velocity.map(partial(_row, ok))
-    data = {
-        name: scalars[name].map(_as_row)
-        if isinstance(scalars[name], LazySteps)
-        else scalar_steps(s, (1, len(p)))
-        for name, s in arrays.items()
-    }
+    data = _rows(scalars, arrays, len(p))
     drawn, pairs = _usable(p, corners.astype(np.intp))
-    cells, corners = len(corners), corners[drawn].astype(np.intp)
+    solid = corners[drawn].astype(np.intp)
+    _check_any_usable(ok, solid)
+    # Unknown positions must not take part in computations.
+    p = np.where(finite_nodes(p[None])[0][:, None], p, np.mean(p[ok], axis=0))
+    placed = _placed(p, solid, pairs, ok, on_globe=on_globe)
+    surface = placed.surface
+    drawn = drawn[placed.kept]
+    if not placed.unchanged:
+        steps = placed.means(steps)
+        data = {name: placed.means(nodal) for name, nodal in data.items()}
+    steps = map_steps(steps, partial(_at_rest, ~surface.valid[0]))
+    data |= _rows(cell_scalars, on_cells, len(corners), drawn)
+    nodes = {"points": surface.points, "triangles": surface.triangles, "valid": surface.valid}
+    return surface, {**nodes, "velocity": steps, "scalars": data}
+
+
+def _corners_of(triangles: ArrayLike) -> AnyArray:
+    """Return triangles as an array, which may have another shape than (M, 3)."""
+    try:
+        return np.asarray(triangles)
+    except ValueError as error:
+        raise FieldError(
+            f"triangles is not an array ({error}); expected three node numbers in every row"
+        ) from error
+
+
+def _check_any_usable(ok: Bools, corners: Indices) -> None:
+    """Check that some triangle (M, 3) has three usable nodes."""
     if not (ok[corners].all(axis=1)).any():
         raise FieldError(
             f"{int(ok.sum())} of {ok.size} nodes are usable, but no triangle has three of them; "
             "check the triangles and the mask"
         )
-    # Unknown positions must not take part in computations.
-    p = np.where(finite_nodes(p[None])[0][:, None], p, np.mean(p[ok], axis=0))
-    placed = _placed(p, corners, pairs, ok, on_globe=on_globe)
-    surface, drawn = placed.surface, drawn[placed.kept]
-    if not placed.unchanged:
-        steps, data = placed.means(steps), {k: placed.means(s) for k, s in data.items()}
-    steps = map_steps(steps, partial(_at_rest, ~surface.valid[0]))
-    for name, s in on_cells.items():
-        late = cell_scalars[name]
+
+
+def _rows(
+    scalars: Mapping[str, Any], arrays: Mapping[str, Floats], count: int, at: Any = slice(None)
+) -> dict[str, Any]:
+    """Return scalars at some of ``count`` nodes or triangles as a row, (T or 1, 1, n).
+
+    ``arrays`` have their values, of scalars that are read later only the first step.
+    """
+    rows: dict[str, Any] = {}
+    for name, values in arrays.items():
+        late = scalars[name]
         if isinstance(late, LazySteps):
-            data[name] = late.map(partial(_as_row, at=drawn))
+            rows[name] = late.map(partial(_as_row, at=at))
         else:
-            data[name] = scalar_steps(s, (1, cells))[..., drawn]
-    nodes = {"points": surface.points, "triangles": surface.triangles, "valid": surface.valid}
-    return surface, {**nodes, "velocity": steps, "scalars": data}
+            rows[name] = scalar_steps(values, (1, count))[..., at]
+    return rows
+
+
+def _first_values(argument: str, scalars: Mapping[str, Any]) -> dict[str, Floats]:
+    """Return the values of scalars, of those that are read later the first step."""
+    values = {}
+    for name, steps in scalars.items():
+        values[name] = with_gaps(f"{argument}[{name!r}]", first_step(steps))
+    return values
 
 
 @dataclass(frozen=True, eq=False)
@@ -186,6 +216,7 @@ def _faults(
     valid: Any,
     scalars: Mapping[str, Floats],
 ) -> list[str]:
+    """Return faults in the shapes of arrays on triangles."""
     if p.ndim != 2 or p.shape[-1] not in (2, 3) or not len(p):
         return [f"points has shape {p.shape}; expected (N, 2) or (N, 3), one row for each node"]
     faults = []
@@ -198,7 +229,9 @@ def _faults(
     elif not len(corners):
         faults.append("triangles is empty; expected node numbers of shape (M, 3)")
     elif corners.min() < 0 or corners.max() >= count:
-        wrong = int(corners.min() if corners.min() < 0 else corners.max())
+        wrong = int(corners.min())
+        if wrong >= 0:
+            wrong = int(corners.max())
         faults.append(f"triangles has node {wrong}; expected 0 to {count - 1}, the rows of points")
     return faults + nodal_faults((count,), v, steps, times, valid, scalars)
 
@@ -215,12 +248,14 @@ def _usable(p: Floats, corners: Indices) -> tuple[Indices, Indices]:
     once = ~repeated(corners)
     flat = corners[placed & ~good]
     is_point = needle_edges(p, flat)
-    counts = [
-        (int((~is_point.any(axis=1)).sum()), "without area"),
-        (int((good & ~once).sum()), "there twice"),
-        (int((~placed).sum()), "at points that are not finite"),
-    ]
-    listed = ", ".join(f"{count:,} {reason}" for count, reason in counts if count)
-    if listed:
-        notify(f"triangles are left out: {listed}", UserWarning)
+    reasons = []
+    for is_left_out, reason in (
+        (~is_point.any(axis=1), "without area"),
+        (good & ~once, "there twice"),
+        (~placed, "at points that are not finite"),
+    ):
+        if is_left_out.any():
+            reasons.append(f"{np.count_nonzero(is_left_out):,} {reason}")
+    if reasons:
+        notify(f"triangles are left out: {', '.join(reasons)}", UserWarning)
     return np.flatnonzero(good & once), edges_of(flat)[is_point]

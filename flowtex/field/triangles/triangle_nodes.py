@@ -31,7 +31,7 @@ def solid_triangles(p: Floats, corners: Indices) -> Bools:
     """Return which triangles (M,) have an area."""
     result = np.empty(len(corners), dtype=bool)
     for block in row_blocks(len(corners), 1):
-        a, b, c = (p.take(nodes, axis=0) for nodes in corners[block].T)
+        a, b, c = p.take(corners[block].T, axis=0)
         one = b - a
         two = c - a
         three = c - b
@@ -174,7 +174,7 @@ def uneven_nodes(triangles: Indices, count: int) -> Bools:
     """
     random = np.random.default_rng(0).integers(0, MOST_RANDOM, count)
     total = np.zeros(count, dtype=np.int64)
-    ahead = [random[nodes] for nodes in triangles.T]
+    ahead = random[triangles.T]
     for corner, nodes in enumerate(triangles.T):
         np.add.at(total, nodes, ahead[corner - 2] - ahead[corner - 1])
     return np.asarray(total != 0)
@@ -239,7 +239,7 @@ def triangle_normals(points: Floats, triangles: Indices) -> Floats:
     """Return the cross product of two sides, (M, 3): the normal, as long as twice the area."""
     result = np.empty((len(triangles), 3), points.dtype)
     for block in row_blocks(len(triangles), 1):
-        a, b, c = (points.take(corner, axis=0) for corner in triangles[block].T)
+        a, b, c = points.take(triangles[block].T, axis=0)
         result[block] = cross(b - a, c - a)
     return result
 
@@ -263,7 +263,7 @@ def corner_ends(points: Floats, triangles: Indices) -> tuple[Floats, Floats]:
     """Return least and greatest coordinates of the corners of triangles, (M, 3) each."""
     low, high = np.empty((2, len(triangles), points.shape[1]), points.dtype)
     for block in row_blocks(len(triangles), 1):
-        a, b, c = (points.take(corner, axis=0) for corner in triangles[block].T)
+        a, b, c = points.take(triangles[block].T, axis=0)
         low[block] = np.minimum(np.minimum(a, b), c)
         high[block] = np.maximum(np.maximum(a, b), c)
     return low, high
@@ -361,8 +361,8 @@ def flipped(triangles: Indices, beside: Indices) -> Bools:
 def normals_at_corners(points: Floats, normals: Floats) -> Floats:
     """Return normals at the corners of triangles, (..., 3, 3), for lighting.
 
-    They are those of the nodes there, (..., 3, 3) as the ``points`` are, and at sharp edges those
-    of the triangle, so that each face is even up to its end.
+    ``normals`` and ``points`` belong to the nodes at the corners, (..., 3, 3). At sharp edges the
+    normal of the triangle replaces the normal of the node, so that faces are even up to their end.
     """
     across = np.cross(points[..., 1, :] - points[..., 0, :], points[..., 2, :] - points[..., 0, :])
     alike = np.einsum("...c,...kc->...k", across, normals)

@@ -250,8 +250,8 @@ class TriangleSurface(NodeSurface):
     def express(self, velocity: Floats) -> IndexVelocity:
         """Express a velocity (T, 1, N, 3) in the tangent planes.
 
-        At a node of a sharp edge that plane lies between the faces, and the part of a velocity in
-        it is greater than in each face. The speed there is the mean of those in the faces.
+        At a node of a sharp edge, the tangent plane lies between the faces, so the velocity along
+        it is greater than along each face. There the speed is the mean of the speeds in the faces.
         """
         flow = to_index_space(self.tangents, self.valid, None, velocity)
         if not self.sharp.any():

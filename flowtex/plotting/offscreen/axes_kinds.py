@@ -87,10 +87,10 @@ class SameMap(NamedTuple):
 
 
 def same_map(field: FlowField, projection: Projection, *, stretched: bool) -> SameMap | None:
-    """Return how a field lies on a map; ``None`` if it lies on one that differs more.
+    """Return how a field lies on a map, ``None`` if the map of the field differs too much.
 
-    The field may lie on a map of another size or origin, and if ``stretched`` with other scales
-    of x and y, or one that ends at another meridian.
+    The map of the field may have another size or origin; if ``stretched``, also other scales of x
+    and y, or another meridian at its ends.
     """
     own = field.projection
     if own is None or own.is_globe or projection.is_globe:
@@ -153,13 +153,22 @@ def label_degrees(ax: Axes, projection: Projection) -> None:
 def longitude_text(degrees: float, _position: int | None = None) -> str:
     """Return a longitude as ``"30°E"``."""
     turned = (degrees + 180.0) % 360.0 - 180.0
-    half = abs(abs(turned) - 180.0) < 1e-6
-    return f"{abs(turned):.6g}°{'' if half or abs(turned) < 1e-6 else 'E' if turned > 0 else 'W'}"
+    text = f"{abs(turned):.6g}°"
+    if abs(turned) < 1e-6 or abs(abs(turned) - 180.0) < 1e-6:
+        return text
+    if turned > 0:
+        return text + "E"
+    return text + "W"
 
 
 def latitude_text(degrees: float, _position: int | None = None) -> str:
     """Return a latitude as ``"60°N"``."""
-    return f"{abs(degrees):.6g}°{'' if abs(degrees) < 1e-6 else 'N' if degrees > 0 else 'S'}"
+    text = f"{abs(degrees):.6g}°"
+    if abs(degrees) < 1e-6:
+        return text
+    if degrees > 0:
+        return text + "N"
+    return text + "S"
 
 
 def _room(axis: Any) -> int:
@@ -172,7 +181,11 @@ def _room(axis: Any) -> int:
 
 
 def _step(degrees: float, most: float) -> float:
-    return next((step for step in TICKS[::-1] if degrees / step <= most), TICKS[0])
+    """Return the smallest step with which at most so many ticks lie in a range of degrees."""
+    for step in reversed(TICKS):
+        if degrees / step <= most:
+            return step
+    return TICKS[0]
 
 
 class _Border(Locator):
@@ -190,7 +203,7 @@ class _Border(Locator):
         return self._find((self._ax.get_xlim(), self._ax.get_ylim()), most)
 
     def __call__(self) -> list[float]:
-        return [float(place) for place in self.crossings()[0]]
+        return list(map(float, self.crossings()[0]))
 
     def tick_values(self, vmin: float, vmax: float) -> list[float]:
         """Return the ticks of the axes as they are."""
@@ -206,6 +219,7 @@ class _Border(Locator):
     def _crossings(
         self, axis_limits: tuple[tuple[float, float], tuple[float, float]], most: int
     ) -> tuple[Floats, Floats, DegreeText]:
+        """Return where meridians or parallels cross an axis, their degrees, and their texts."""
         limits = np.array(axis_limits)
         (start, end) = limits[self._number]
         (border, other) = limits[1 - self._number]
@@ -288,7 +302,9 @@ class AxesScales:
         points = np.asarray(values, dtype=float)
         with np.errstate(all="ignore"):
             scaled = self._scaled.transform(points.reshape(-1, 2)).reshape(points.shape)
-            return (scaled if self.polar else self._within(scaled)) * (1.0, self.stretch)
+            if not self.polar:
+                scaled = self._within(scaled)
+            return scaled * (1.0, self.stretch)
 
     def _within(self, scaled: Floats) -> Floats:
         """Return scaled values with NaN where matplotlib clips them."""
@@ -328,14 +344,13 @@ class AxesScales:
             *_, origin, sign = self.polar
             beside = np.maximum(sign * (near[..., 1] - origin), 2 * step[..., 1])
             near[..., 1] = origin + sign * beside
-        # Column n is the derivative along coordinate n.
-        slope = np.stack(
-            [
-                (self.on_map(near + delta) - self.on_map(near - delta)) / (2 * step[..., n, None])
-                for n, delta in enumerate(np.moveaxis(step[..., None] * np.eye(2), -1, 0))
-            ],
-            axis=-1,
-        )
+        columns = []
+        for coordinate in (0, 1):
+            delta = np.zeros_like(step)
+            delta[..., coordinate] = step[..., coordinate]
+            difference = self.on_map(near + delta) - self.on_map(near - delta)
+            columns.append(difference / (2 * step[..., coordinate, None]))
+        slope = np.stack(columns, axis=-1)
         if self.polar:  # a velocity along the angle has the unit of the radius
             with np.errstate(all="ignore"):  # undefined at radius 0
                 slope[..., 0] /= near[..., 1, None]
@@ -373,26 +388,43 @@ class AxesScales:
 
         # Those of a long series are read when they are drawn.
         velocity: Any = LazySteps(len(field.velocity), transformed)
-        scalars = {SPEED: field.speed, **field.scalars}
+        has_position = valid
+        if field.has_position is not None:
+            has_position = field.has_position & valid
         shown = replace(
             field,
             points=planar(scaled, scaled[valid][0]),
             velocity=velocity,
             valid=valid,
-            has_position=valid if field.has_position is None else field.has_position & valid,
-            scalars=scalars,
+            has_position=has_position,
+            scalars={SPEED: field.speed, **field.scalars},
             units={SPEED: field.unit_of(SPEED), **field.units},
             formula=None,
             section=None,
         )
         if not self.polar or field.triangles is not None:
             return shown
-        # The angle may be periodic.
-        closed = FlowField.from_arrays(
-            shown.points, shown.velocity, valid=valid, scalars=scalars, sign_free=field.sign_free
-        )
-        names = ("points", "velocity", "valid", "has_position", "scalars", "periodic")
-        return replace(shown, **{name: getattr(closed, name) for name in names})
+        return _closed(shown)
+
+
+def _closed(field: FlowField) -> FlowField:
+    """Return a structured field with its periodic axes closed, such as the angle."""
+    closed = FlowField.from_arrays(
+        field.points,
+        field.velocity,
+        valid=field.valid,
+        scalars=field.scalars,
+        sign_free=field.sign_free,
+    )
+    return replace(
+        field,
+        points=closed.points,
+        velocity=closed.velocity,
+        valid=closed.valid,
+        has_position=closed.has_position,
+        scalars=closed.scalars,
+        periodic=closed.periodic,
+    )
 
 
 def with_polar_scalars(field: FlowField, frame: Floats, name: str | None) -> FlowField:
@@ -407,6 +439,7 @@ def with_polar_scalars(field: FlowField, frame: Floats, name: str | None) -> Flo
 
 
 def _missed(values: Floats) -> FieldError:
+    """Return the error of a flow that lies outside of what the axes can show."""
     low = np.min(values.reshape(-1, 2), axis=0)
     high = np.max(values.reshape(-1, 2), axis=0)
     return FieldError(

@@ -12,9 +12,8 @@ import tempfile
 from collections.abc import Generator, Iterator
 from contextlib import suppress
 from fractions import Fraction
-from itertools import pairwise
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -23,6 +22,9 @@ from flowtex._util.array_types import Bytes
 from flowtex._util.progress import check
 from flowtex._util.whole_file import WholeFile
 from flowtex.errors import FieldError, install_extra
+
+if TYPE_CHECKING:
+    from PIL import Image
 
 Size = tuple[int, int]
 
@@ -197,9 +199,7 @@ def _encode_mp4(new: WholeFile, size: Size, fps: float, quality: int) -> Encoder
 
 def _encode_by_pillow(new: WholeFile, size: Size, fps: float, quality: int) -> Encoder:
     """Keep pictures on the disk until Pillow writes them; those of a GIF share one palette."""
-    from PIL import Image
-
-    kind, plain = new.part.suffix[1:].upper(), Image.Dither.NONE
+    kind = new.part.suffix[1:].upper()
     shape = (size[1], size[0], 3)
     most = 3 * PILLOW_MAX_PIXELS // max(math.prod(shape), 1)
     with tempfile.TemporaryFile() as spool:
@@ -214,31 +214,60 @@ def _encode_by_pillow(new: WholeFile, size: Size, fps: float, quality: int) -> E
             spool.write(picture.data)
         spool.flush()
         kept = np.memmap(spool, np.uint8, "r", shape=(count, *shape))
-        palette = None
-        if kind == "GIF":  # one palette for pictures from the whole movie
-            chosen = np.linspace(0, count - 1, min(count, PALETTE_PICTURES)).round().astype(int)
-            step = max(min(size) // PALETTE_SIDE, 1)
-            samples = Image.fromarray(np.vstack([kept[n, ::step, ::step] for n in chosen]))
-            colours = max(round(256 * quality / 100), 2)
-            palette = samples.quantize(colours, Image.Quantize.MEDIANCUT, kmeans=2, dither=plain)
-
-        def pictures() -> Iterator[Image.Image]:
-            for picture in kept:
-                check()
-                image = Image.fromarray(picture)
-                yield image if palette is None else image.quantize(palette=palette, dither=plain)
-
         # A GIF counts in hundredths of a second, a WebP in thousandths.
-        unit, images = 1 if palette is None else 10, pictures()
-        ends = [round(1000 * n / fps / unit) * unit for n in range(count + 1)]
-        durations = [after - before for before, after in pairwise(ends)]
+        if kind == "GIF":
+            images = _with_palette(kept, _common_palette(kept, quality))
+            duration = _durations(count, fps, unit_ms=10)
+        else:
+            images = _images(kept)
+            duration = _durations(count, fps, unit_ms=1)
         options = {"quality": quality, "method": 2, "optimize": False, "disposal": 1}
         next(images).save(
             new.file,
             kind,
             save_all=True,
             append_images=images,
-            duration=durations if count > 1 else durations[0],
+            duration=duration,
             loop=0,
             **options,
         )
+
+
+def _images(pictures: Bytes) -> Iterator[Image.Image]:
+    """Yield pictures (N, H, W, 3) as images of Pillow."""
+    from PIL import Image
+
+    for picture in pictures:
+        check()
+        yield Image.fromarray(picture)
+
+
+def _with_palette(pictures: Bytes, palette: Image.Image) -> Iterator[Image.Image]:
+    """Yield pictures (N, H, W, 3) in the colours of a palette."""
+    from PIL import Image
+
+    for image in _images(pictures):
+        yield image.quantize(palette=palette, dither=Image.Dither.NONE)
+
+
+def _common_palette(pictures: Bytes, quality: int) -> Image.Image:
+    """Return an image with a palette for pictures (N, H, W, 3), found in a few of all of them."""
+    from PIL import Image
+
+    count, height, width, _ = pictures.shape
+    chosen = np.linspace(0, count - 1, min(count, PALETTE_PICTURES)).round().astype(int)
+    step = max(min(width, height) // PALETTE_SIDE, 1)
+    samples = np.vstack([pictures[n, ::step, ::step] for n in chosen])
+    colours = max(round(256 * quality / 100), 2)
+    return Image.fromarray(samples).quantize(
+        colours, Image.Quantize.MEDIANCUT, kmeans=2, dither=Image.Dither.NONE
+    )
+
+
+def _durations(count: int, fps: float, *, unit_ms: int) -> int | list[int]:
+    """Return the duration of each picture in milliseconds, or of the only one."""
+    ends = np.rint(1000 * np.arange(count + 1) / fps / unit_ms).astype(int) * unit_ms
+    durations: list[int] = np.diff(ends).tolist()
+    if count == 1:
+        return durations[0]
+    return durations

@@ -297,41 +297,58 @@ class FlowImage(AxesImage):
             self._unit = placed.transform
             self._turn = placed.turn
         if _kind(ax)[0] == "polar":
-            mesh, options = read_field(mesh, options.field), replace(options, field=FieldOptions())
+            mesh = read_field(mesh, options.field)
+            options = replace(options, field=FieldOptions())
             scalar = options.appearance.scalar_name
             mesh = with_polar_scalars(mesh, _frame(mesh.surface), scalar)
-        (self._scene,) = (scene,) = make_scenes(mesh, options)
-        self._projection = projection = scene.field.projection
+        (self._scene,) = make_scenes(mesh, options)
+        self._flow = self._scene.field
+        self._projection = self._flow.projection
         if is_geo(ax):
-            _check_earth(scene.field)
+            _check_earth(self._flow)
         else:
-            self._unit = unit_of(projection)
-        surface = scene.whole.surface
-        self._frame = frame = _frame(surface)
-        self._flow = scene.field
+            self._unit = unit_of(self._projection)
+        self._frame = _frame(self._scene.whole.surface)
         self._scales: AxesScales | None = None
-        self._supersampling, self._clock = supersampling, 0.0
+        self._supersampling = supersampling
+        self._clock = 0.0
         self._shown: tuple[object, ...] = ()
         self._picture = np.zeros((1, 1, 4), np.uint8)
-        middle, half = frame @ surface.center, surface.plane_size / 2
-        corners = self._unit.inverted().transform([middle - half, middle + half])
-        if is_scaled := not is_geo(ax) and _kind(ax) != LINEAR:
-            corners = AxesScales(ax, framed=False).extent(self._flow, frame)
+        is_scaled = not is_geo(ax) and _kind(ax) != LINEAR
+        corners = self._corners(ax, is_scaled=is_scaled)
         (left, bottom), (right, top) = corners.tolist()
         _limit(ax, *self._ends(ax, left, right), bottom, top)
         if is_scaled:
             self._follow_scales(AxesScales(ax, framed=False))
-            scene = self._scene
         super().__init__(ax, extent=(left, right, bottom, top))
         # Pixels have no values, but a colour bar and a norm without limits need some.
-        self.set_data([scene.legend_limits])
+        self.set_data([self._scene.legend_limits])
         self.mouseover = False
-        if scene.scalar_name is not None:
+        if self._scene.scalar_name is not None:
             super().set_cmap(self._bar_colours())
-            norm = (LogNorm if scene.appearance.log_scale else Normalize)(*scene.legend_limits)
-            self.set_norm(norm if scene.appearance.norm is None else scene.appearance.norm)
-        self._first_norm, self._first_clim = self.norm, self.get_clim()
+            self.set_norm(self._norm())
+        self._first_norm = self.norm
+        self._first_clim = self.get_clim()
         self._title = ""
+
+    def _corners(self, ax: Axes, *, is_scaled: bool) -> Floats:
+        """Return the lower left and the upper right corner of the flow on the axes, (2, 2)."""
+        if is_scaled:
+            return AxesScales(ax, framed=False).extent(self._flow, self._frame)
+        surface = self._scene.whole.surface
+        middle = self._frame @ surface.center
+        half = surface.plane_size / 2
+        corners: Floats = self._unit.inverted().transform([middle - half, middle + half])
+        return corners
+
+    def _norm(self) -> Any:
+        """Return the norm of the colour bar."""
+        look = self._scene.appearance
+        if look.norm is not None:
+            return look.norm
+        if look.log_scale:
+            return LogNorm(*self._scene.legend_limits)
+        return Normalize(*self._scene.legend_limits)
 
     def _ends(self, ax: Any, left: float, right: float) -> tuple[float, float]:
         """Return the ends along x, the map's own ends where the flow may lie at both of them."""
@@ -395,9 +412,12 @@ class FlowImage(AxesImage):
         if (scales and scales.key) == (self._scales and self._scales.key):
             return
         if scales is not None and self._projection is not None:
+            kind = f"with scales {scales.names}"
+            if scales.polar:
+                kind = "polar"
             raise FieldError(
-                f"ax is {'polar' if scales.polar else f'with scales {scales.names}'}, but the data "
-                "are of the Earth; expected linear axes, or those of cartopy"
+                f"ax is {kind}, but the data are of the Earth; expected linear axes, or those of "
+                "cartopy"
             )
         flow = self._flow
         if scales is not None:
@@ -500,7 +520,10 @@ class FlowImage(AxesImage):
         if self._projection is None:
             straight = self.axes.get_aspect() != "auto" and _kind(self.axes) == LINEAR
             try:
-                self._follow_scales(None if straight else AxesScales(self.axes))
+                if straight:
+                    self._follow_scales(None)
+                else:
+                    self._follow_scales(AxesScales(self.axes))
             except FieldError:  # no part of the flow is on the axes now
                 return np.zeros((1, 1, 4), np.uint8), 0.0, 0.0, None
         box = self.axes.bbox
@@ -512,7 +535,7 @@ class FlowImage(AxesImage):
             corners = self._unit.transform(self.axes.transData.inverted().transform(pixels))
         else:
             corners = self._scales.shown(pixels)
-        width, height = (int(n) for n in np.maximum(high - low, 1))
+        width, height = np.maximum(high - low, 1).astype(int).tolist()
         density = self.axes.figure.dpi * magnification / USUAL_DPI
         shown = (*corners.ravel(), width, height, density, self.time, self.clock)
         cmap = self._scene.appearance.cmap
@@ -545,7 +568,7 @@ class FlowImage(AxesImage):
         """Draw the rectangle between two corners, (2, 2), row 0 at the bottom, opaque."""
         spans = np.abs(corners[1] - corners[0])
         scale = min(float(np.max(size / spans)), LONGEST_SIDE_PX / float(spans.max()))
-        width, height = (max(round(float(n)), 1) for n in spans * scale)
+        width, height = np.maximum(np.rint(spans * scale), 1).astype(int).tolist()
         look = self._scene.appearance
         if self.norm is not self._first_norm or look.norm is not None:  # set by matplotlib
             look = replace(look, norm=self.norm, clim=None, log_scale=False)
@@ -580,6 +603,7 @@ class FlowImage(AxesImage):
         return np.array(shot)  # matplotlib needs a writable array
 
     def _camera(self, middle: Floats, height: float) -> Camera:
+        """Return the camera that looks at a place on the axes, (2,), from above."""
         surface = self._scene.whole.surface
         right, up = self._frame
         moved = middle - self._frame @ surface.center
@@ -602,9 +626,13 @@ def _limit(ax: Any, left: float, right: float, bottom: float, top: float) -> Non
         if scale == "linear":
             bottom = min(bottom, 0.0)
     if ax.get_autoscalex_on():
-        ax.set_xlim(*((right, left) if ax.xaxis_inverted() else (left, right)))
+        if ax.xaxis_inverted():
+            left, right = right, left
+        ax.set_xlim(left, right)
     if ax.get_autoscaley_on():
-        ax.set_ylim(*((top, bottom) if ax.yaxis_inverted() else (bottom, top)))
+        if ax.yaxis_inverted():
+            bottom, top = top, bottom
+        ax.set_ylim(bottom, top)
 
 
 def _kind(ax: Axes) -> tuple[str, str, str]:
@@ -614,8 +642,9 @@ def _kind(ax: Axes) -> tuple[str, str, str]:
 def _on_map(ax: Axes, mesh: Any, options: Options) -> tuple[Any, Options, SameMap]:
     """Return what is drawn on axes of a map, its options, and how the data lie on the axes.
 
-    Datasets are read in the projection of the axes. Fields and stores have one already: where it is
-    that of the axes they are drawn as they are, otherwise fields are put on another map.
+    Datasets are read in the projection of the axes. Fields and stores have a projection. If it is
+    the same as the projection of the axes, they are drawn as they are; otherwise fields are put on
+    the map of the axes.
     """
     if options.field.projection is not None or options.field.globe is not None:
         raise FieldError(
@@ -658,6 +687,7 @@ def _check_earth(field: FlowField) -> None:
 
 
 def _frame(surface: Surface) -> Floats:
+    """Return the directions of x and y of a flat surface, (2, 3)."""
     if surface.frame is None:
         raise FieldError(
             "the surface is curved, so its picture has no axes in data coordinates; draw it with "

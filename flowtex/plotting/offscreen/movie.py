@@ -86,7 +86,7 @@ def frame_times(
             f"most {MAX_FRAMES:,}: choose fewer seconds or fewer frames per second"
         )
     if field.steady:
-        clocks = tuple(duration * n / count for n in range(count))
+        clocks = tuple((duration * np.arange(count) / count).tolist())
         chosen = (settings.speed, settings.speed_in)
         speed = settings.speed
         if chosen == (TABLE["speed"].default, TABLE["speed_in"].default):
@@ -102,6 +102,7 @@ def frame_times(
 
 
 def _seconds(field: FlowField, settings: Settings, seconds: float | None) -> float:
+    """Return the length of a movie in seconds."""
     if seconds is None:
         run = float(np.clip(STEP_S * (len(field.times) - 1), *RUN_S))
         if field.steady:
@@ -260,7 +261,7 @@ def frames(
 ) -> Iterator[Bytes]:
     """Yield the frames of a movie, (height, width, 3) uint8, each drawn when it is requested.
 
-    Parameters and errors are those of :func:`flowtex.movie`.
+    Parameters and errors are as for :func:`flowtex.movie`.
 
     Examples
     --------
@@ -277,9 +278,13 @@ def frames(
 def _prepare(
     mesh: Any, words: dict[str, Any], fps: float, seconds: float | None, **drawing: Any
 ) -> tuple[FrameTimes, Generator[Bytes, None, None]]:
+    """Return the times of the frames, and a generator of their pictures."""
     options = Options.split(**words)
     field = read_field(mesh, options.field)
-    settings = options.make_settings(field, **({"motion": "speed"} if field.steady else {}))
+    defaults = {}
+    if field.steady:
+        defaults["motion"] = "speed"
+    settings = options.make_settings(field, **defaults)
     shown = frame_times(field, settings, fps=fps, seconds=seconds)
     values = dict(options.settings)
     if field.steady:

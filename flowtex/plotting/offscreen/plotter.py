@@ -17,7 +17,7 @@ from flowtex.plotting.component import WHOLE, open_plotter, point_camera
 from flowtex.rendering.camera import CAMERA_LIMITS, read_camera
 from flowtex.rendering.diagnostics import require_opengl
 from flowtex.rendering.vtk.contexts import uninterrupted
-from flowtex.scene.annotations import Layout, annotate_views
+from flowtex.scene.annotations import Layout, annotate_views, room_of
 from flowtex.scene.array_arguments import takes_arrays
 from flowtex.scene.fields import TracedFlow
 from flowtex.scene.options import Appearance, Options, ViewOptions
@@ -38,8 +38,8 @@ NOTHING_SEEN = (
 class OffscreenPlotter:
     """Pictures of one scene, or of two side by side, drawn by VTK without a window.
 
-    Parameters and errors are those of :func:`flowtex.render`; ``density`` and ``still`` are those
-    of the handles, which are the textures of the views. The scenes are closed with it.
+    Parameters and errors are as for :func:`flowtex.render`; ``density`` and ``still`` are
+    attributes of the handles, the textures of the views. The scenes are closed with the plotter.
     """
 
     def __init__(
@@ -61,30 +61,43 @@ class OffscreenPlotter:
         for scene in scenes:
             if annotations or scene.appearance.show_scalar_bar is None:
                 scene.appearance = replace(scene.appearance, show_scalar_bar=False)
-        self._supersampling, self._margin, self._view = supersampling, margin, view
+        self._supersampling = supersampling
+        self._margin = margin
+        self._view = view
+        outline_samples = 0  # supersampling smooths outlines as well
+        if supersampling == 1:
+            outline_samples = OUTLINE_SAMPLES
         self._plotter, self.handles = open_plotter(
             scenes,
             view,
             (size[0] * supersampling, size[1] * supersampling),
             margin=margin,
-            # Supersampling smooths outlines as well.
-            outline_samples=OUTLINE_SAMPLES if supersampling == 1 else 0,
+            outline_samples=outline_samples,
             labels=not annotations,
             off_screen=True,
             lighting="light kit",
         )
-        window = self._plotter.render_window
-        window.SetDPI(window.GetDPI() * supersampling)
-        for handle in self.handles:
-            handle.density, handle.surface.view.still = supersampling * density, still
+        self._set_density(density, still=still)
         #: Image without the flow, with room for annotations; ``None`` without these.
         self._canvas: Bytes | None = None
         if annotations:
-            try:
-                self._reserve(size)
-            except BaseException:
-                self.close()
-                raise
+            self._begin_annotations(size)
+
+    def _begin_annotations(self, size: tuple[int, int]) -> None:
+        """Leave room for annotations; close the plotter if this fails."""
+        try:
+            self._reserve(size)
+        except BaseException:
+            self.close()
+            raise
+
+    def _set_density(self, density: float, *, still: bool) -> None:
+        """Set the size of texts and of the grain in pixels of the supersampled picture."""
+        window = self._plotter.render_window
+        window.SetDPI(window.GetDPI() * self._supersampling)
+        for handle in self.handles:
+            handle.density = self._supersampling * density
+            handle.surface.view.still = still
 
     def picture(
         self, *, time: float | str | None = None, clock: float = 0.0, transparent: bool = False
@@ -105,7 +118,9 @@ class OffscreenPlotter:
             image: Any = self._plotter.screenshot(
                 return_img=True, transparent_background=transparent
             )
-        pixels = np.asarray(image[..., : 4 if transparent else 3], dtype=np.uint8)
+        pixels = np.asarray(image, dtype=np.uint8)
+        if not transparent:
+            pixels = pixels[..., :3]
         visible = any(handle.scene.appearance.opacity > 0 for handle in self.handles)
         if visible and (pixels[..., :3] == self._plotter.background_color.int_rgb).all():
             notify(NOTHING_SEEN, UserWarning)
@@ -124,18 +139,24 @@ class OffscreenPlotter:
         ground = self._plotter.background_color.int_rgb
         self._canvas = np.full((height, width, 3), ground, np.uint8)
         layouts = self._annotate(self._canvas.copy())
-        above = max(each.above for each in layouts)
-        below = max(each.below for each in layouts)
-        if left_out := dict.fromkeys(name for each in layouts for name in each.left_out):
+        above, below = room_of(layouts)
+        left_out: dict[str, None] = {}
+        for each in layouts:
+            left_out |= dict.fromkeys(each.left_out)
+        if left_out:
             notify(f"a picture of {width} x {height} has no room for: {', '.join(left_out)}")
         if above or below:
             self._rows = slice(above, height - below)
-            drawn = (width, height - above - below)
-            self._plotter.window_size = [self._supersampling * side for side in drawn]
+            drawn_height = height - above - below
+            self._plotter.window_size = [
+                self._supersampling * width,
+                self._supersampling * drawn_height,
+            ]
             surface = self.handles[0].scene.whole.surface
             point_camera(self._plotter, surface, self._view, self._margin)
 
     def _annotate(self, canvas: Bytes) -> list[Layout]:
+        """Write annotations on a picture in place; return their layouts."""
         return annotate_views(
             canvas,
             [handle.scene for handle in self.handles],
@@ -157,7 +178,7 @@ def _check_size(size: tuple[int, int], supersampling: int) -> None:
             f"supersampling is {supersampling!r}; expected 1 to {MAX_SUPERSAMPLING}, such as 2"
         )
     size = checked_size(size, low=0)
-    if not all(1 <= side * supersampling <= LONGEST_SIDE for side in size):
+    if min(size) < 1 or max(size) * supersampling > LONGEST_SIDE:
         if supersampling > 1:
             times = f" times {supersampling}"
         else:

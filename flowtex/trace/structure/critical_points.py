@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections import UserList
+import itertools
+from collections import Counter, UserList
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
@@ -11,7 +12,7 @@ import numpy as np
 import scipy
 
 from flowtex._util.arguments import check_field, checked_count
-from flowtex._util.array_types import AnyArray, Floats
+from flowtex._util.array_types import AnyArray, Bools, Floats, Indices
 from flowtex._util.progress import track
 from flowtex.errors import FieldError, notify
 from flowtex.field import FlowField
@@ -35,6 +36,7 @@ if TYPE_CHECKING:
 
 #: Kinds of critical points, for tables and legends.
 KINDS = ("saddle", "source", "sink", "centre", "spiral source", "spiral sink", "degenerate")
+POINCARE_INDICES = {"saddle": -1, "degenerate": 0}  #: On surfaces of nodes; 1 for other kinds.
 ROUNDING = 1e-9  #: Greatest ratio to the other eigenvalue of one that counts as zero.
 REAL_SHARE = 1e-6  #: Greatest imaginary part of a real eigenvalue, as a share of it.
 SPIRAL_SHARE = 0.25  #: Least ratio of growth to rotation of a spiral on any grid.
@@ -102,9 +104,16 @@ class CriticalPoint:
     def ways(self, *, forward: bool) -> list[Floats]:
         """Return unit vectors along which separatrices leave the point, or come to it."""
         if self.kind == "saddle":
-            way = self.eigenvectors[0 if forward else 1].real
+            if forward:
+                way = self.eigenvectors[0].real
+            else:
+                way = self.eigenvectors[1].real
             return [way, -way]
-        return [way for way, leaves in self.directions if leaves == forward]
+        ways = []
+        for way, leaves in self.directions:
+            if leaves == forward:
+                ways.append(way)
+        return ways
 
 
 class CriticalPoints(UserList[CriticalPoint]):
@@ -167,16 +176,23 @@ class CriticalPoints(UserList[CriticalPoint]):
         """
         import pyvista as pv
 
-        mesh = pv.PolyData(np.array([p.position for p in self]).reshape(-1, 3))
-        mesh["kind"] = np.array([KINDS.index(p.kind) for p in self], dtype=np.uint8)
-        mesh["time"] = np.array([p.time for p in self])
-        mesh["strength"] = np.array([p.strength for p in self])
+        mesh = pv.PolyData(np.reshape(self._each("position"), (-1, 3)))
+        mesh["kind"] = np.array(list(map(KINDS.index, self._each("kind"))), dtype=np.uint8)
+        mesh["time"] = np.array(self._each("time"))
+        mesh["strength"] = np.array(self._each("strength"))
         return mesh
 
+    def _each(self, name: str) -> list[Any]:
+        """Return an attribute of each point."""
+        return [getattr(point, name) for point in self]
+
     def __repr__(self) -> str:
-        counts = [(kind, sum(p.kind == kind for p in self)) for kind in KINDS]
-        found = ", ".join(f"{count} x {kind}" for kind, count in counts if count)
-        return f"CriticalPoints({found or 'no points'})"
+        counts = Counter(self._each("kind"))
+        found = []
+        for kind in KINDS:
+            if counts[kind]:
+                found.append(f"{counts[kind]} x {kind}")
+        return f"CriticalPoints({', '.join(found) or 'no points'})"
 
 
 def critical_points(field: FlowField, *, steps: Sequence[int] | None = None) -> CriticalPoints:
@@ -221,13 +237,16 @@ def critical_points(field: FlowField, *, steps: Sequence[int] | None = None) -> 
         rates = formula_rates(part)
         if rates is not None:
             found = _of_formula(part, rates)
+        elif part.triangles is None:
+            found = _on_grid(part)
         else:
-            found = (_on_grid if part.triangles is None else _on_triangles)(part)
+            found = _on_triangles(part)
         points += _with_strength(found, part)
     return CriticalPoints(points)
 
 
 def _of_formula(field: FlowField, rates: Rates) -> list[CriticalPoint]:
+    """Return the critical points of a formula: zeros of its rates, and those at poles."""
     found = zeros(rates)
     if found.lines:
         notify(f"{field.name}: the velocity is zero along lines; points there are not marked")
@@ -245,7 +264,7 @@ def _of_formula(field: FlowField, rates: Rates) -> list[CriticalPoint]:
         points[n] = replace(points[n], directions=pairs)
     for pole in field.surface.poles or ():
         away = np.abs(index[:, pole.component] - pole.line) > 1
-        points = [point for point, is_kept in zip(points, away, strict=True) if is_kept]
+        points = list(itertools.compress(points, away))
         points += _resolved(_distinct(_at_pole(field, pole), field), field)
         index = np.array([point.index[::-1] for point in points]).reshape(-1, 2)
     if any(field.periodic):
@@ -254,43 +273,52 @@ def _of_formula(field: FlowField, rates: Rates) -> list[CriticalPoint]:
 
 
 def _on_grid(field: FlowField) -> list[CriticalPoint]:
-    u = field.index_velocity.components[0]
+    """Return the critical points in the cells of a structured surface, also around its poles."""
+    j, i = np.nonzero(_searched_cells(field))
+    at_corners = _at_corners(field.index_velocity.components[0], j, i)
+    cell, place = bilinear_zeros(np.stack(at_corners, axis=1))
+    low_left, low_right, high_left, high_right = (values[cell] for values in at_corners)
+    s, t = np.moveaxis(place[..., None], 1, 0)
+    by_i = (low_right - low_left) * (1 - t) + (high_right - high_left) * t
+    by_j = (high_left - low_left) * (1 - s) + (high_right - low_right) * s
+    gradient = np.stack([by_i, by_j], axis=-1)
+    index = np.stack([i[cell], j[cell]], axis=-1) + place
+    position = field.surface.at(index)
+    at_nodes = field.surface.tangents  # (2, J, I, 3)
+    tangents = np.empty((len(index), 2, 3))
+    for axis, component in np.ndindex(2, 3):
+        tangents[:, axis, component] = between_nodes(at_nodes[axis, ..., component], index)
+    found = _points(field, position, gradient, tangents, index)
+    for pole in field.surface.poles or ():
+        found += _at_pole(field, pole)
+    return _resolved(_distinct(found, field), field)
+
+
+def _searched_cells(field: FlowField) -> Bools:
+    """Return the cells that may contain critical points: not at walls, nor beside poles."""
     speed = field.index_velocity.speed[0]
-    corners = field.surface.cell_corners
     rest = speed <= REST_SHARE * speed.max(initial=0)
-    usable = field.surface.cells.copy()
     # A single node at rest may be a critical point; several are a wall or a region at rest.
-    several = rest & (
-        scipy.ndimage.convolve(rest.astype(int), np.ones((3, 3), int), mode="constant") > 1
-    )
-    usable &= ~np.logical_or.reduce([several[c] for c in corners])
-    poles = tuple(field.surface.poles or ())
-    for pole in poles:
+    counts = scipy.ndimage.convolve(rest.astype(int), np.ones((3, 3), int), mode="constant")
+    several = rest & (counts > 1)
+    usable = field.surface.cells.copy()
+    for corner in field.surface.cell_corners:
+        usable &= ~several[corner]
+    for pole in field.surface.poles or ():
         if pole.component:
             lines = usable
         else:
             lines = usable.T
-        lines[0 if pole.inward > 0 else -1] = False
-    j, i = np.nonzero(usable)
-    cell, place = bilinear_zeros(np.stack([u[c][j, i] for c in corners], axis=1))
-    j = j[cell]
-    i = i[cell]
-    (s, t) = place.T
-    at = []
-    for a in (0, 1):
-        for b in (0, 1):
-            at.append(u[j + a, i + b])
-    by_i = (at[1] - at[0]) * (1 - t[:, None]) + (at[3] - at[2]) * t[:, None]
-    by_j = (at[2] - at[0]) * (1 - s[:, None]) + (at[3] - at[1]) * s[:, None]
-    gradient = np.stack([by_i, by_j], axis=-1)
-    index = np.stack([i + s, j + t], axis=-1)
-    position = field.surface.at(index)
-    parts = np.moveaxis(field.surface.tangents, -1, 1)  # (2, 3, J, I)
-    tangents = np.array([[between_nodes(part, index) for part in tangent] for tangent in parts])
-    found = _points(field, position, gradient, np.moveaxis(tangents, -1, 0), index)
-    for pole in poles:
-        found += _at_pole(field, pole)
-    return _resolved(_distinct(found, field), field)
+        if pole.inward > 0:
+            lines[0] = False
+        else:
+            lines[-1] = False
+    return usable
+
+
+def _at_corners(nodal: Floats, j: Indices, i: Indices) -> list[Floats]:
+    """Return nodal values (J, I, 2) at the corners of cells (N,), row by row, (N, 2) each."""
+    return [nodal[j, i], nodal[j, i + 1], nodal[j + 1, i], nodal[j + 1, i + 1]]
 
 
 def _at_pole(field: FlowField, pole: Pole) -> list[CriticalPoint]:
@@ -330,32 +358,21 @@ def _at_pole(field: FlowField, pole: Pole) -> list[CriticalPoint]:
 
 
 def _on_triangles(field: FlowField) -> list[CriticalPoint]:
+    """Return the critical points in the triangles of a surface."""
     surface = field.surface
     assert isinstance(surface, TriangleSurface)
-    normals, points = surface.normals[0], field.points[0]
-    velocity = field.velocity[0, 0]
-    velocity = velocity - np.einsum("nc,nc->n", velocity, normals)[:, None] * normals
-    speed = np.linalg.norm(velocity, axis=1)
-    rest = speed <= REST_SHARE * speed.max(initial=0)
-    resting = rest[surface.triangles].sum(axis=1)
-    several = np.zeros(len(points), dtype=bool)
-    several[surface.triangles[resting > 1]] = True
-    number = np.flatnonzero(surface.cells & ~(several & rest)[surface.triangles].any(axis=1))
-    triangles, crosses = surface.triangles[number], surface.crosses[number]
-    # A single node at rest gets the least of its neighbours' velocities: one triangle has the zero.
-    alone = triangles[rest[triangles].any(axis=1)]
-    corner = np.argmax(rest[alone], axis=1)
-    first = velocity[np.take_along_axis(alone, (corner[:, None] + 1) % 3, 1)[:, 0]]
-    second = velocity[np.take_along_axis(alone, (corner[:, None] + 2) % 3, 1)[:, 0]]
-    resting_nodes = np.take_along_axis(alone, corner[:, None], 1)[:, 0]
-    velocity[resting_nodes] = LEAST_SHARE * (0.62 * first + 0.38 * second)
+    points = field.points[0]
+    number, velocity = _searched_triangles(field, surface)
+    triangles = surface.triangles[number]
+    crosses = surface.crosses[number]
     corners = points[triangles]
     normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     flipped = np.einsum("mc,mc->m", normal, crosses) < 0
     facing = np.where(flipped[:, None], triangles[:, ::-1], triangles)
-    turning = triangle_indices(points, normals, velocity, facing)
+    turning = triangle_indices(points, surface.normals[0], velocity, facing)
     chosen = turning != 0
-    number, triangles = number[chosen], triangles[chosen]
+    number = number[chosen]
+    triangles = triangles[chosen]
     normal = crosses[chosen] / np.linalg.norm(crosses[chosen], axis=1, keepdims=True)
     corners = points[triangles]
     first = corners[:, 1] - corners[:, 0]
@@ -371,6 +388,31 @@ def _on_triangles(field: FlowField) -> list[CriticalPoint]:
     index = surface.index_of(number, weights)
     found = _points(field, position, gradient, frame, index)
     return _resolved(found, field)
+
+
+def _searched_triangles(field: FlowField, surface: TriangleSurface) -> tuple[Indices, Floats]:
+    """Return the triangles that may contain critical points, (M,), and the velocity, (N, 3).
+
+    The velocity is that along the surface. A single node at rest gets the least of its neighbours'
+    velocities, so that one triangle has the zero; several are a wall or a region at rest.
+    """
+    normals = surface.normals[0]
+    velocity = field.velocity[0, 0]
+    velocity = velocity - np.einsum("nc,nc->n", velocity, normals)[:, None] * normals
+    speed = np.linalg.norm(velocity, axis=1)
+    rest = speed <= REST_SHARE * speed.max(initial=0)
+    resting = rest[surface.triangles].sum(axis=1)
+    several = np.zeros(len(normals), dtype=bool)
+    several[surface.triangles[resting > 1]] = True
+    number = np.flatnonzero(surface.cells & ~(several & rest)[surface.triangles].any(axis=1))
+    triangles = surface.triangles[number]
+    alone = triangles[rest[triangles].any(axis=1)]
+    corner = np.argmax(rest[alone], axis=1)
+    rows = np.arange(len(alone))
+    first = velocity[alone[rows, (corner + 1) % 3]]
+    second = velocity[alone[rows, (corner + 2) % 3]]
+    velocity[alone[rows, corner]] = LEAST_SHARE * (0.62 * first + 0.38 * second)
+    return number, velocity
 
 
 def _points(
@@ -399,10 +441,16 @@ def _points(
             place = None
         else:
             place = (float(lonlat[0][n]), float(lonlat[1][n]))
-        kind = _kind(value, 0.0 if found is None else float(found.growth[n]))
-        if found is not None and found.is_degenerate[n]:
+        if found is None:
+            kind = _kind(value, 0.0)
+        elif found.is_degenerate[n]:
             kind = "degenerate"
-        usual = {"saddle": -1, "degenerate": 0}.get(kind, 1)
+        else:
+            kind = _kind(value, float(found.growth[n]))
+        if found is None:
+            poincare_index = POINCARE_INDICES.get(kind, 1)
+        else:
+            poincare_index = int(found.indices[n])
         result.append(
             CriticalPoint(
                 position=position[n],
@@ -412,14 +460,17 @@ def _points(
                 time=float(field.times[0]),
                 index=(float(index[n, 1]), float(index[n, 0])),
                 lonlat=place,
-                poincare_index=usual if found is None else int(found.indices[n]),
+                poincare_index=poincare_index,
             )
         )
     return result
 
 
 def _kind(values: AnyArray, growth: float = 0.0, error: float = 0.0) -> str:
-    """Return the kind by eigenvalues known to an error, else by the growth in a turn."""
+    """Return the kind of a point by its eigenvalues, (2,), whose real parts have an ``error``.
+
+    Within the error, ``growth`` decides: how much farther away a line is after a turn.
+    """
     real = values.real
     imaginary = abs(values[0].imag)
     size = np.abs(values).max()
@@ -455,11 +506,11 @@ def _resolved(points: list[CriticalPoint], field: FlowField) -> list[CriticalPoi
     A spiral that grows by less than the error of the gradient is a centre, and points of the same
     index in one cell are a degenerate point.
     """
-    weak = [
-        n
-        for n, point in enumerate(points)
-        if abs(point.eigenvalues[0].real) <= SPIRAL_SHARE * abs(point.eigenvalues[0].imag)
-    ]
+    weak = []
+    for n, point in enumerate(points):
+        value = point.eigenvalues[0]
+        if abs(value.real) <= SPIRAL_SHARE * abs(value.imag):
+            weak.append(n)
     if weak:
         _, error = gradient_and_error(field)
         for n in weak:
@@ -469,7 +520,7 @@ def _resolved(points: list[CriticalPoint], field: FlowField) -> list[CriticalPoi
             points[n] = replace(points[n], kind=_kind(values, error=near))
     if len(points) < 2:
         return points
-    size = np.array([field.surface.cell_size[field.surface.node_near(p.index)] for p in points])
+    size = cell_sizes(points, field)
     positions = np.array([point.position for point in points])
     pairs = scipy.spatial.KDTree(positions).query_pairs(size.max(), output_type="ndarray")
     lengths = np.asarray(np.linalg.norm(np.subtract(*positions[pairs.T]), axis=1))
@@ -487,13 +538,19 @@ def _resolved(points: list[CriticalPoint], field: FlowField) -> list[CriticalPoi
     return result
 
 
+def cell_sizes(points: Sequence[CriticalPoint], field: FlowField) -> Floats:
+    """Return the size of the cell around each point, (K,)."""
+    surface = field.surface
+    sizes = [surface.cell_size[surface.node_near(point.index)] for point in points]
+    return np.array(sizes, dtype=float)
+
+
 def _distinct(points: list[CriticalPoint], field: FlowField) -> list[CriticalPoint]:
     """Drop points that were found in two cells, or at both ends of a closed axis.
 
     Where cells around a node disagree, or a determinant is zero, the point is degenerate.
     """
-    size = field.surface.cell_size
-    near = SAME_POINT_CELLS * np.array([size[field.surface.node_near(p.index)] for p in points])
+    near = SAME_POINT_CELLS * cell_sizes(points, field)
     kept = np.ones(len(points), dtype=bool)
     pairs: set[tuple[int, int]] = set()
     if points:
@@ -505,7 +562,7 @@ def _distinct(points: list[CriticalPoint], field: FlowField) -> list[CriticalPoi
             kept[second] = False
             if points[first].poincare_index != points[second].poincare_index:
                 points[first] = replace(points[first], kind="degenerate")
-    result = [point for point, is_kept in zip(points, kept, strict=True) if is_kept]
+    result = list(itertools.compress(points, kept))
     for n, point in enumerate(result):
         if point.kind == "degenerate":
             result[n] = replace(point, poincare_index=_ring_index(field, point))
@@ -532,10 +589,13 @@ def _with_strength(points: list[CriticalPoint], field: FlowField) -> list[Critic
     """Return critical points with their strengths."""
     columns = field.shape[1]
     nodes = []
-    for j, i in (field.surface.node_near(p.index) for p in points):
+    signs = np.empty(len(points), dtype=np.intp)
+    steepness = np.empty(len(points))
+    for n, point in enumerate(points):
+        j, i = field.surface.node_near(point.index)
         nodes.append(int(j * columns + i))
-    signs = np.array([point.poincare_index for point in points], dtype=np.intp)
-    steepness = np.array([abs(np.prod(point.eigenvalues)) for point in points])
+        signs[n] = point.poincare_index
+        steepness[n] = abs(np.prod(point.eigenvalues))
     # A point of index 0 needs no partner to vanish.
     found = np.zeros(len(points))
     paired = signs != 0

@@ -125,7 +125,9 @@ def zeros(rates: Rates) -> Zeros:
         values = rates.at(circle)
         angle = np.unwrap(np.arctan2(values[:, 1], values[:, 0]))
         turns = (angle[-1] - angle[0]) / (2 * np.pi)
-        indices[n] = round(turns) if np.isfinite(turns) else 0
+        indices[n] = 0
+        if np.isfinite(turns):
+            indices[n] = round(turns)
     growth = np.zeros(len(places))
     trace = np.trace(gradient, axis1=1, axis2=2)
     size = np.abs(gradient).max(axis=(1, 2), initial=0)
@@ -381,55 +383,91 @@ def formula_orbit(
     place moves along a section across the flow, by Newton's method with the growth of distances in
     a turn: the divergence, integrated over its time. Where it is 0, all lines close.
     """
-    diagonal = np.hypot(*np.ptp(rates.ends, axis=1))
-    way = 1.0 if forward else -1.0
-    normal = rates.at(start[None])[0] * way
-    normal /= np.linalg.norm(normal)
-    section = np.array([-normal[1], normal[0]])
-
-    def rate(_: float, at: Floats) -> Floats:
-        return np.asarray(way * rates.at(at[None])[0])
-
-    def crosses(_: float, at: Floats) -> float:
-        return float((at - start) @ normal)
-
-    crosses.terminal, crosses.direction = True, 1.0  # type: ignore[attr-defined]
-    options: Any = {"method": "LSODA", "rtol": TOLERANCE, "dense_output": True}
-    options["atol"] = TOLERANCE * diagonal
-    solve, at = scipy.integrate.solve_ivp, start
+    way = 1.0
+    if not forward:
+        way = -1.0
+    section = _Section(rates, start, way)
+    at = start
     for _ in range(TURNS):
-        most: Any = solve(rate, (0, ALMOST * period), at, **options)
-        begin = most.y[:, -1]
-        rest: Any = solve(rate, (most.t[-1], 3 * period), begin, events=crosses, **options)
-        if not len(rest.t_events[0]):
+        turn = section.turn(at, period)
+        if turn is None:
             return None
-        period = float(rest.t_events[0][0])
-        times = np.linspace(0, period, POINTS)
-        is_first = times <= most.t[-1]
-        points = np.concatenate([most.sol(times[is_first]).T, rest.sol(times[~is_first]).T])
+        times, points = turn
+        period = float(times[-1])
         divergence = way * np.trace(rates.gradient(points), axis1=1, axis2=2)
         growth = float(scipy.integrate.simpson(divergence, x=times))
         if not abs(growth) > LEAST_GROWTH:
             return None
-        moved = float((points[-1] - at) @ section)
-        if abs(moved) < CLOSED * diagonal:
-            lengths = np.linalg.norm(np.diff(points, axis=0), axis=1)
-            along = np.concatenate([[0], np.cumsum(lengths)])
-            even = np.linspace(0, along[-1], POINTS // 4)
-            points = np.stack([np.interp(even, along, x) for x in points.T], axis=-1)
+        moved = float((points[-1] - at) @ section.along)
+        if abs(moved) < CLOSED * section.diagonal:
+            points = _evenly_spaced(points, POINTS // 4)
             points[-1] = points[0]
-            return points[:: 1 if forward else -1], period, (growth < 0) == forward
-        at = at + section * moved / (1 - np.exp(min(growth, 1.0)))
+            if not forward:
+                points = points[::-1]
+            return points, period, (growth < 0) == forward
+        at = at + section.along * moved / (1 - np.exp(min(growth, 1.0)))
     return None
+
+
+class _Section:
+    """A straight line across the flow through a place (2,), to which lines return."""
+
+    def __init__(self, rates: Rates, start: Floats, way: float) -> None:
+        self._rates = rates
+        self._start = start
+        self._way = way
+        normal = self._rate(0.0, start)
+        self._normal = normal / np.linalg.norm(normal)
+        #: Unit vector along the section, (2,).
+        self.along = np.array([-self._normal[1], self._normal[0]])
+        self.diagonal = np.hypot(*np.ptp(rates.ends, axis=1))
+
+    def _rate(self, _: float, at: Floats) -> Floats:
+        return np.asarray(self._way * self._rates.at(at[None])[0])
+
+    def turn(self, at: Floats, period: float) -> tuple[Floats, Floats] | None:
+        """Return times (N,) and points (N, 2) of a line until it crosses the section again.
+
+        ``period`` is about the time that this takes. Returns ``None`` if the line does not return.
+        """
+
+        def crosses(_: float, place: Floats) -> float:
+            return float((place - self._start) @ self._normal)
+
+        crosses.terminal = True  # type: ignore[attr-defined]
+        crosses.direction = 1.0  # type: ignore[attr-defined]
+        options: Any = {"method": "LSODA", "rtol": TOLERANCE, "dense_output": True}
+        options["atol"] = TOLERANCE * self.diagonal
+        solve = scipy.integrate.solve_ivp
+        most: Any = solve(self._rate, (0, ALMOST * period), at, **options)
+        begin = most.y[:, -1]
+        rest: Any = solve(self._rate, (most.t[-1], 3 * period), begin, events=crosses, **options)
+        crossings = rest.t_events[0]
+        if not len(crossings):
+            return None
+        times = np.linspace(0, float(crossings[0]), POINTS)
+        is_first = times <= most.t[-1]
+        points = np.concatenate([most.sol(times[is_first]).T, rest.sol(times[~is_first]).T])
+        return times, points
+
+
+def _evenly_spaced(points: Floats, count: int) -> Floats:
+    """Return points (count, 2) at equal distances along a line of points (N, 2)."""
+    lengths = np.linalg.norm(np.diff(points, axis=0), axis=1)
+    along = np.concatenate([[0], np.cumsum(lengths)])
+    even = np.linspace(0, along[-1], count)
+    x = np.interp(even, along, points[:, 0])
+    y = np.interp(even, along, points[:, 1])
+    return np.stack([x, y], axis=-1)
 
 
 def nullclines(field: FlowField, window: Floats | None = None) -> tuple[Floats, Floats]:
     """Return the zeros of the components of a steady flow; a curved surface has no such lines.
 
-    The components are those along the axes of a flat surface, x and y in the plane of these. They
-    are linear in the drawn triangles; those of a formula in the plane are its own zeros, and not
-    its poles, and finer in a ``window``, (2, 2) as the ends of x and y. Returns the straight pieces
-    of both lines, (S, 2, 3) each, in no order.
+    The components point along the axes of the flat surface. They are linear in the drawn triangles.
+    For a formula in the plane its own zeros are found, without its poles, and with finer lines in a
+    ``window``, (2, 2) as the ends of x and y. Returns the straight pieces of both lines, (S, 2, 3)
+    each, in no order.
     """
     surface = field.surface
     rates = plane_rates(field)
@@ -441,11 +479,11 @@ def nullclines(field: FlowField, window: Floats | None = None) -> tuple[Floats, 
             return coarse
         middle = window.mean(axis=1)
         half = np.ptp(window, axis=1) / 2
-        one, two = (
-            np.concatenate([p[(abs(p.mean(axis=1)[:, :2] - middle) > half).any(axis=1)], q])
-            for p, q in zip(coarse, _of_formula(rates, window), strict=True)
-        )
-        return one, two
+        lines = []
+        for pieces, finer in zip(coarse, _of_formula(rates, window), strict=True):
+            is_outside = (abs(pieces.mean(axis=1)[:, :2] - middle) > half).any(axis=1)
+            lines.append(np.concatenate([pieces[is_outside], finer]))
+        return lines[0], lines[1]
     corners = surface.corners_of(surface.drawn)
     points = surface.points.reshape(-1, 3)[corners]
     values = (field.velocity[0].reshape(-1, 3) @ surface.frame.T)[corners]
@@ -476,6 +514,7 @@ def view_window(field: FlowField, focus: Floats, visible: float) -> Floats | Non
 
 
 def _of_formula(rates: Rates, window: Floats) -> tuple[Floats, Floats]:
+    """Return the zeros of both rates of a formula in a window, (S, 2, 3) each."""
     sides = np.ptp(window, axis=1)
     counts = np.maximum(np.round(LINE_CELLS * sides / sides.max()), LEAST_CELLS).astype(int)
     x = np.linspace(window[0, 0], window[0, 1], counts[0] + 1)
@@ -486,15 +525,19 @@ def _of_formula(rates: Rates, window: Floats) -> tuple[Floats, Floats]:
     b = number[:-1, 1:]
     c = number[1:, :-1]
     d = number[1:, 1:]
-    corners = np.concatenate([np.stack(t, axis=-1).reshape(-1, 3) for t in ((a, b, d), (a, d, c))])
+    lower = np.stack([a, b, d], axis=-1).reshape(-1, 3)
+    upper = np.stack([a, d, c], axis=-1).reshape(-1, 3)
+    corners = np.concatenate([lower, upper])
     points = nodes.reshape(-1, 3)
     values = rates.at(points[:, :2])
     lines = []
     for k in range(2):
         known = np.isfinite(values[corners, k]).all(axis=1)
         sides = _zero_pieces(points[corners[known]], values[corners[known], k])[1]
-        ends, vanishes = zip(*(_crossing(rates, k, sides[:, m]) for m in range(2)), strict=True)
-        lines.append(np.stack(ends, axis=1)[vanishes[0] & vanishes[1]])
+        first, first_vanishes = _crossing(rates, k, sides[:, 0])
+        second, second_vanishes = _crossing(rates, k, sides[:, 1])
+        pieces = np.stack([first, second], axis=1)
+        lines.append(pieces[first_vanishes & second_vanishes])
     return lines[0], lines[1]
 
 

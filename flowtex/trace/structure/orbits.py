@@ -8,6 +8,7 @@ of a formula in the plane are then integrated from the formula.
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cache, partial
@@ -22,6 +23,7 @@ from flowtex.field.formula.rates import Rates
 from flowtex.field.locate import locator, surface_point
 from flowtex.trace.structure.critical_points import (
     CriticalPoints,
+    cell_sizes,
     critical_points,
     gradient_and_error,
     steady_parts,
@@ -137,10 +139,18 @@ def orbits_around(field: FlowField, points: CriticalPoints) -> list[ClosedOrbit]
     for forward in (True, False):
         chosen = stable == forward
         for orbit in rays.orbits(low[chosen], high[chosen], ray[chosen], forward=forward):
-            near = (scipy.spatial.KDTree(o.points).query(orbit.points[0])[0] for o in orbits)
-            if not any(distance < 2 * rays.spacing for distance in near):
+            if not _is_known(orbit, orbits, 2 * rays.spacing):
                 orbits.append(orbit)
     return orbits
+
+
+def _is_known(orbit: ClosedOrbit, known: Sequence[ClosedOrbit], distance: float) -> bool:
+    """Return whether the first point of an orbit is closer to a known orbit than a distance."""
+    for other in known:
+        nearest, _ = scipy.spatial.KDTree(other.points).query(orbit.points[0])
+        if nearest < distance:
+            return True
+    return False
 
 
 class _Rays:
@@ -154,8 +164,7 @@ class _Rays:
         surface = field.surface
         self._is_isolated = isolation(field)
         self._middle = np.array([point.position for point in around])
-        nodes = [surface.node_near(point.index) for point in around]
-        self._cell = np.array([float(surface.cell_size[node]) for node in nodes])
+        self._cell = cell_sizes(around, field)
         self.spacing = POINT_CELLS * float(np.median(self._cell))
         vectors = np.array([point.eigenvectors for point in around])
         plane = np.linalg.svd(np.concatenate([vectors.real, vectors.imag], axis=1))[2]
@@ -209,30 +218,23 @@ class _Rays:
         """Return the orbits between two places of rays, which lines join in a direction."""
         low = low.copy()
         high = high.copy()
-        for _ in range(ROUNDS if self._rates is None else 0):
-            share = np.linspace(0, 1, PARTS + 1)
-            distances = low[:, None] + (high - low)[:, None] * share
-            number = np.repeat(np.arange(len(ray)), PARTS + 1)
-            places, kept, index = self._put(distances.ravel(), number, ray)
-            moved = self._returns(index, ray[kept], forward=forward) - places
-            first = np.flatnonzero((moved[:-1] >= 0) & (moved[1:] < 0) & (kept[:-1] == kept[1:]))
-            # Where rounding hides it, the stretch stays as it is.
-            low[kept[first]], high[kept[first]] = places[first], places[first + 1]
+        if self._rates is None:
+            for _ in range(ROUNDS):
+                self._narrow(low, high, ray, forward=forward)
         places, kept, index = self._put(0.5 * (low + high), np.arange(len(ray)), ray)
         lines: list[Floats] = [at[None] for at in index]
         end = self._returns(index, ray[kept], forward=forward, lines=lines)
         if self._rates is not None:
-            found = (self._exact(self._rates, line, forward=forward) for line in lines)
-            result = []
-            for orbit in found:
+            exact = []
+            for line in lines:
+                orbit = self._exact(self._rates, line, forward=forward)
                 if orbit is not None:
-                    result.append(orbit)
-            return result
+                    exact.append(orbit)
+            return exact
         # Where lines jump from one side to the other there is no orbit.
         closed = np.abs(end - places) < CLOSED_CELLS * self._cell[ray[kept]]
-        turns = [lines[n] for n in np.flatnonzero(closed)]
         made = []
-        for turn in turns:
+        for turn in itertools.compress(lines, closed):
             if self._is_isolated(turn):
                 made.append(self._orbit(turn, stable=forward))
         return made
@@ -273,6 +275,20 @@ class _Rays:
             np.einsum("mnc,nc->mn", offsets, self._across[ray]),
         )
 
+    def _narrow(self, low: Floats, high: Floats, ray: Indices, *, forward: bool) -> None:
+        """Replace stretches of rays by the part of each that contains the orbit.
+
+        Where rounding hides the orbit, the stretch stays as it is.
+        """
+        share = np.linspace(0, 1, PARTS + 1)
+        distances = low[:, None] + (high - low)[:, None] * share
+        number = np.repeat(np.arange(len(ray)), PARTS + 1)
+        places, kept, index = self._put(distances.ravel(), number, ray)
+        moved = self._returns(index, ray[kept], forward=forward) - places
+        first = np.flatnonzero((moved[:-1] >= 0) & (moved[1:] < 0) & (kept[:-1] == kept[1:]))
+        low[kept[first]] = places[first]
+        high[kept[first]] = places[first + 1]
+
     def _returns(
         self, index: Floats, ray: Indices, *, forward: bool, lines: list[Floats] | None = None
     ) -> Floats:
@@ -294,7 +310,8 @@ class _Rays:
             across = across * side
             alive = np.arange(1, CHUNK + 1)[:, None] <= np.searchsorted(lags, found.reach)
             back = (across[:-1] < 0) & (across[1:] >= 0) & (along[1:] > 0) & alive
-            back[: 0 if done else 2] = False
+            if not done:
+                back[:2] = False
             at = np.argmax(back, axis=0)
             returned = np.asarray(back.any(axis=0))
             n = np.arange(len(going))
@@ -319,7 +336,7 @@ class _Rays:
         surface = self._field.surface
         nodal = self._field.velocity[0]
         points = surface.at(np.concatenate([line, line[:1]]))
-        velocity = np.array([surface_point(surface, at[::-1]).interpolate(nodal) for at in line])
+        velocity = _interpolated(self._field, nodal, line)
         # A component of the velocity is linear in a cell, and the speed is not.
         chord = np.roll(points[:-1], -1, axis=0) - np.roll(points[:-1], 1, axis=0)
         along = np.abs(np.einsum("nc,nc->n", velocity, chord)) / np.linalg.norm(chord, axis=1)
@@ -331,6 +348,15 @@ class _Rays:
         else:
             ordered = points[::-1]
         return ClosedOrbit(ordered, stable, period, float(self._field.times[0]))
+
+
+def _interpolated(field: FlowField, nodal: Floats, line: Floats) -> Floats:
+    """Return nodal values (J, I, C) at indices (N, 2) as (i, j), (N, C)."""
+    values = []
+    for index in line:
+        point = surface_point(field.surface, index[::-1])
+        values.append(point.interpolate(nodal))
+    return np.array(values)
 
 
 def isolation(field: FlowField) -> Callable[[Floats], bool]:
@@ -350,8 +376,7 @@ def isolation(field: FlowField) -> Callable[[Floats], bool]:
 
     def is_isolated(turn: Floats) -> bool:
         places = field.surface.at(np.concatenate([turn, turn[:1]]))
-        points = (surface_point(field.surface, at[::-1]) for at in turn)
-        rates = np.array([point.interpolate(nodal()) for point in points])
+        rates = _interpolated(field, nodal(), turn)
         lengths = np.linalg.norm(np.diff(places, axis=0), axis=1)
         with np.errstate(divide="ignore", invalid="ignore"):
             times = 0.5 * (lengths + np.roll(lengths, 1)) / np.linalg.norm(rates[:, 2:], axis=1)

@@ -17,6 +17,7 @@ from flowtex.field.locate import locator
 from flowtex.trace.structure.critical_points import (
     CriticalPoint,
     CriticalPoints,
+    cell_sizes,
     critical_points,
     steady_parts,
 )
@@ -94,8 +95,9 @@ class Separatrices(list[Separatrix]):
             row: dict[str, Any] = {"time": line.saddle.time, "strength": line.saddle.strength}
             row |= {"forward": line.forward, "closed": line.closed}
             row["length"] = float(np.linalg.norm(np.diff(line.points, axis=0), axis=1).sum())
-            names = (f"{end}_{axis}" for end in ("saddle", "end") for axis in "xyz")
-            row |= dict(zip(names, line.points[[0, -1]].ravel().tolist(), strict=True))
+            for end, position in (("saddle", line.points[0]), ("end", line.points[-1])):
+                for axis, value in zip("xyz", position.tolist(), strict=True):
+                    row[f"{end}_{axis}"] = value
             rows.append(row)
         return rows
 
@@ -106,13 +108,17 @@ class Separatrices(list[Separatrix]):
         """
         import pyvista as pv
 
-        counts = np.array([len(line.points) for line in self], dtype=int)
-        firsts = np.cumsum(counts) - counts
-        cells = [[n, *range(first, first + n)] for n, first in zip(counts, firsts, strict=True)]
-        points = np.concatenate([np.empty((0, 3)), *(line.points for line in self)])
-        mesh = pv.PolyData(points, lines=np.concatenate(cells) if cells else None)
-        for name in ("forward", "closed"):
-            mesh.cell_data[name] = np.array([getattr(line, name) for line in self], dtype=np.uint8)
+        points = [np.empty((0, 3))]
+        cells: list[int] = []
+        first = 0
+        for line in self:
+            count = len(line.points)
+            points.append(line.points)
+            cells += [count, *range(first, first + count)]
+            first += count
+        mesh = pv.PolyData(np.concatenate(points), lines=cells or None)
+        mesh.cell_data["forward"] = np.array([line.forward for line in self], dtype=np.uint8)
+        mesh.cell_data["closed"] = np.array([line.closed for line in self], dtype=np.uint8)
         mesh.cell_data["time"] = np.array([line.saddle.time for line in self])
         mesh.cell_data["strength"] = np.array([line.saddle.strength for line in self])
         return mesh
@@ -181,7 +187,7 @@ def separatrices_between(
 ) -> Separatrices:
     """Follow the lines of a steady field whose critical points are known.
 
-    They have at most ``most`` points; the other arguments are those of :func:`separatrices`.
+    They have at most ``most`` points; the other arguments are as for :func:`separatrices`.
     """
     saddles = points.of_kind("saddle", "degenerate")
     if strongest is not None:
@@ -203,14 +209,18 @@ def _lines(
     forward: bool,
 ) -> list[Separatrix]:
     """Return the lines that leave saddles, or those that come to them."""
-    starts = [(saddle, way) for saddle in saddles for way in saddle.ways(forward=forward)]
+    starts: list[CriticalPoint] = []
+    ways: list[Floats] = []
+    for saddle in saddles:
+        for way in saddle.ways(forward=forward):
+            starts.append(saddle)
+            ways.append(way)
     if not starts:
         return []
-    size = field.surface.cell_size
-    node_near = field.surface.node_near
-    cells = np.array([float(size[node_near(saddle.index)]) for saddle, _ in starts])
-    offsets = BEGIN_CELLS * cells[:, None] * np.array([way for _, way in starts])
-    begin, _ = locator(field).nearest(np.array([s.position for s, _ in starts]) + offsets)
+    cells = cell_sizes(starts, field)
+    offsets = BEGIN_CELLS * cells[:, None] * np.array(ways)
+    positions_of_saddles = np.array([saddle.position for saddle in starts])
+    begin, _ = locator(field).nearest(positions_of_saddles + offsets)
     begin = np.array(begin[:, ::-1], dtype=float)
     spacing = POINT_CELLS * float(np.median(cells))
     lags = spacing * np.arange(1.0, min(int(length / spacing), most) + 1)
@@ -218,31 +228,44 @@ def _lines(
     ends = scipy.spatial.KDTree([point.position for point in points])
     is_isolated = isolation(field)
     result = []
-    for n, first in enumerate(begin):
-        saddle, cell = starts[n][0], cells[n]
+    for n, saddle in enumerate(starts):
         shown = positions[: int(np.searchsorted(lags, reach[n])), n]
         if not len(shown):  # it points out of the surface
             continue
-        index = np.concatenate([first[None], shown])
+        index = np.concatenate([begin[n : n + 1], shown])
         line = field.surface.at(index)
-        distance, which = (np.asarray(a) for a in ends.query(line))
-        away = np.flatnonzero(distance > 2 * END_CELLS * cell)
-        arrived = np.flatnonzero(distance < END_CELLS * cell)
-        arrived = arrived[arrived > away[0]] if len(away) else arrived[:0]
-        end = int(arrived[0]) if len(arrived) else len(line)
-        turned = _turned(line[:end], spacing, CLOSED_CELLS * cell)
+        end, point = _arrival(line, ends, cells[n])
+        turned = _turned(line[:end], spacing, CLOSED_CELLS * cells[n])
         turn = None
         if turned is not None and is_isolated(index[slice(*turned)]):
-            turn, last = turned[0] + 1, turned[1] + 1
-            line = line[:last]
-        elif len(arrived):
-            line = np.concatenate([line[: end + 1], points[int(which[end])].position[None]])
+            turn = turned[0] + 1
+            line = line[: turned[1] + 1]
+        elif point is not None:
+            line = np.concatenate([line[: end + 1], points[point].position[None]])
         line = np.concatenate([saddle.position[None], line])
         places = None
         if field.projection is not None:
             places = np.stack(field.projection.lonlat(line), axis=-1)
         result.append(Separatrix(line, saddle, forward, turn is not None, turn, places))
     return result
+
+
+def _arrival(line: Floats, ends: Any, cell: float) -> tuple[int, int | None]:
+    """Return where a line reaches a critical point, and which; its length and ``None`` if nowhere.
+
+    ``ends`` is the tree of the points, and ``cell`` the size of the cell at the saddle. A line
+    must have left the surroundings of its saddle before.
+    """
+    distance, which = ends.query(line)
+    away = np.flatnonzero(distance > 2 * END_CELLS * cell)
+    if not len(away):
+        return len(line), None
+    arrived = np.flatnonzero(distance < END_CELLS * cell)
+    arrived = arrived[arrived > away[0]]
+    if not len(arrived):
+        return len(line), None
+    end = int(arrived[0])
+    return end, int(which[end])
 
 
 def _followed(

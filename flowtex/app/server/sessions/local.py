@@ -92,11 +92,11 @@ class LimitedMessages(UnChunker):
         else:
             first = None
         if method == "trame.state.update":
+            declared = []
             if isinstance(first, list):
-                changes = [c for c in first if isinstance(c, dict)]
-            else:
-                changes = []
-            declared = [c for c in changes if name_among(c.get("key"), self._declared)]
+                for change in first:
+                    if isinstance(change, dict) and name_among(change.get("key"), self._declared):
+                        declared.append(change)
             return {**message, "args": [declared], "kwargs": {}}
         if method == "trame.lifecycle.update":
             if name_among(first, EVENTS):
@@ -216,7 +216,10 @@ class LocalSession(Session):
 
         async def send(is_binary: bool, content: Any) -> None:  # noqa: FBT001 wslink's call
             with suppress(ConnectionError):  # the page is gone, and the loop below ends
-                await (socket.send_bytes if is_binary else socket.send_str)(content)
+                if is_binary:
+                    await socket.send_bytes(content)
+                else:
+                    await socket.send_str(content)
 
         link = await self._endpoint.connect()
         # trame-rca's object for all areas of a page, where there is one.

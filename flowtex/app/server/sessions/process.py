@@ -13,7 +13,7 @@ import math
 import os
 import socket as sockets
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Mapping
 from contextlib import suppress
 from typing import Any, NoReturn
 
@@ -76,9 +76,9 @@ def process_opener(
                 return await open_session(again=False)
             if error.kind and error.kind != "FieldError":
                 raise RuntimeError(f"{error.kind}: {error}\n{error.trace}") from error
-            raise FieldError(
-                str(error) if error.kind else f"the process of the page {error}"
-            ) from error
+            if error.kind:
+                raise FieldError(str(error)) from error
+            raise FieldError(f"the process of the page {error}") from error
         opened(about["said"])
         return ProcessSession(child, about)
 
@@ -125,16 +125,16 @@ class ProcessSession(Session):
     async def respond(self, name: str, request: web.Request) -> web.StreamResponse:
         """Pass on a request for a file, or an upload."""
         del name
+        body = None
+        if request.body_exists:
+            body = request.content
         async with self._http.request(
             request.method,
             URL(request.raw_path, encoded=True),
-            headers={n: request.headers[n] for n in REQUEST_HEADERS if n in request.headers},
-            data=request.content if request.body_exists else None,
+            headers=_some_of(request.headers, REQUEST_HEADERS),
+            data=body,
         ) as answer:
-            headers = {}
-            for key in ANSWER_HEADERS:
-                if key in answer.headers:
-                    headers[key] = answer.headers[key]
+            headers = _some_of(answer.headers, ANSWER_HEADERS)
             response = web.StreamResponse(status=answer.status, headers=headers)
             await response.prepare(request)
             async for chunk in answer.content.iter_chunked(CHUNK_BYTES):
@@ -203,10 +203,14 @@ class HostedSession:
         if "open" in request:
             self._site, messages = self._open_site(request["open"])
             return {**self._loop.run_until_complete(self._open()), "said": messages}, ()
-        self._loop.run_until_complete(self._run() if "run" in request else self._site.stop())
+        if "run" in request:
+            self._loop.run_until_complete(self._run())
+        else:
+            self._loop.run_until_complete(self._site.stop())
         return None, ()
 
     async def _open(self) -> dict[str, Any]:
+        """Listen at a socket in the folder; return what the main process must know."""
         socket = sockets.socket(sockets.AF_UNIX, sockets.SOCK_STREAM)
         descriptor = os.open(self._folder.path, os.O_RDONLY)
         socket.bind(_socket_path(descriptor))
@@ -224,3 +228,12 @@ class HostedSession:
         while True:
             check()
             await asyncio.sleep(CHECK_S)
+
+
+def _some_of(headers: Mapping[str, str], names: Iterable[str]) -> dict[str, str]:
+    """Return those headers of a request or an answer that have one of some names."""
+    found = {}
+    for name in names:
+        if name in headers:
+            found[name] = headers[name]
+    return found

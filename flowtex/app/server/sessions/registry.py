@@ -77,7 +77,9 @@ class Session(ABC):
 
     def is_idle(self, limit: float) -> bool:
         """Return whether no page has been connected for ``limit`` seconds, and none is loading."""
-        return self.away > max(limit, LOADING_S if self._loading else 0.0)
+        if self._loading:
+            limit = max(limit, LOADING_S)
+        return self.away > limit
 
     @abstractmethod
     async def respond(self, name: str, request: web.Request) -> web.StreamResponse:
@@ -160,7 +162,10 @@ class Sessions:
 
     def files(self, token: str) -> Respond | None:
         """Return the handler of file requests for the token of a session's files."""
-        return next((session.respond for session in self if session.files == token), None)
+        for session in self:
+            if session.files == token:
+                return session.respond
+        return None
 
     async def prepare(self) -> dict[str, str]:
         """Open the first session, whose errors so appear early; return the folders of all pages."""
@@ -209,6 +214,7 @@ class Sessions:
             return session
 
     async def _begin(self) -> Session:
+        """Open a session, and return it registered by its token."""
         session = await self._open()
         if self._closed:  # meanwhile
             await session.end()
