@@ -22,6 +22,7 @@ from vtkmodules.vtkRenderingCore import vtkTextProperty, vtkTextRenderer
 
 from flowtex._util.colours import is_light
 from flowtex.errors import FieldError
+from flowtex.rendering.vtk.frame import FrameSteps, Step
 from flowtex.scene.annotations import OPACITY, round_values
 
 #: Arguments of every bar before it is placed.
@@ -58,9 +59,8 @@ END_LINE = 1.5  #: Length of the line from an end to its text, in heights of the
 POINTS = 72  #: Points in an inch.
 MOST_DIGITS = 10  #: Most digits of a label.
 #: Bars that are drawn here with the arguments of users, ``None`` for those that PyVista has made
-#: and that keep their place and labels; and renderers that have some.
+#: and that keep their place and labels.
 _options: weakref.WeakKeyDictionary[Any, Mapping[str, Any] | None] = weakref.WeakKeyDictionary()
-_renderers: weakref.WeakSet[Any] = weakref.WeakSet()
 
 
 class Box(NamedTuple):
@@ -124,9 +124,7 @@ def is_vertical(options: Mapping[str, Any]) -> bool:
 def place_bar(bar: vtkScalarBarActor, renderer: Any, options: Mapping[str, Any] | None) -> None:
     """Place a bar before each frame of its renderer; one that PyVista has made has no options."""
     _options.setdefault(bar, options)
-    if renderer not in _renderers:
-        _renderers.add(renderer)
-        renderer.AddObserver("StartEvent", lambda caller, _: _arrange(caller))
+    FrameSteps.of(renderer).add(Step.BARS, _arrange)
 
 
 def _arrange(renderer: Any) -> None:

@@ -13,7 +13,7 @@ from weakref import WeakKeyDictionary, WeakSet
 import numpy as np
 import pyvista as pv
 from numpy.typing import ArrayLike
-from vtkmodules.vtkRenderingCore import vtkDataSetMapper, vtkProperty, vtkRenderer
+from vtkmodules.vtkRenderingCore import vtkDataSetMapper, vtkProperty
 
 from flowtex._util.array_types import Bytes, Indices
 from flowtex.errors import FieldError, notify
@@ -21,6 +21,7 @@ from flowtex.field import FlowField, Surface
 from flowtex.field.options import FieldOptions, accepts_options
 from flowtex.plotting.handle import FlowHandle
 from flowtex.rendering.camera import CAMERA_LIMITS, Camera, apply_camera, read_camera
+from flowtex.rendering.vtk.frame import FrameSteps, Step
 from flowtex.rendering.webgl.bodies import MOST_LABELS, MOST_VERTICES, Bodies, Body, Label, Light
 from flowtex.scene.annotations import difference_text
 from flowtex.scene.array_arguments import joins_arrays
@@ -31,7 +32,7 @@ from flowtex.textures.images import as_image
 COLOURS = "flowtex colours"  #: Name of the colours among the arrays of a mesh.
 WHOLE = ViewOptions()  #: A view of the whole surface.
 #: Bounds of the objects of renderers, by which their cameras clip.
-_bounds: WeakKeyDictionary[vtkRenderer, Any] = WeakKeyDictionary()
+_bounds: WeakKeyDictionary[pv.Renderer, Any] = WeakKeyDictionary()
 
 
 @pv.register_plotter_component("flowtex")
@@ -253,12 +254,11 @@ def point_camera(
     apply_camera(view.first_camera(surface, aspect_of(plotter), margin), plotter.camera)
     plotter.camera_set = True
     renderer.reset_camera_clipping_range()
-    if renderer not in _bounds:  # else it follows them already
-        renderer.AddObserver("StartEvent", _follow_bounds)
+    FrameSteps.of(renderer).add(Step.CLIPPING, _follow_bounds)
     _bounds[renderer] = renderer.ComputeVisiblePropBounds()
 
 
-def _follow_bounds(renderer: vtkRenderer, _: str) -> None:
+def _follow_bounds(renderer: pv.Renderer) -> None:
     """Set the clipping range again before a frame if the bounds of the objects have changed."""
     bounds = renderer.ComputeVisiblePropBounds()
     if bounds != _bounds[renderer]:

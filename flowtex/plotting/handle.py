@@ -18,7 +18,7 @@ from flowtex.plotting.overlay import MapOverlay, StructureOverlay
 from flowtex.rendering.shaders import const
 from flowtex.rendering.vtk import FlowSurface, lookup_table, surface_mesh, use_flow_mapper
 from flowtex.rendering.vtk.flow_mapper import Ends
-from flowtex.rendering.vtk.layer import weak_callback
+from flowtex.rendering.vtk.frame import FrameSteps, Step, weak_callback
 from flowtex.scene.fields import read_field, share_field
 from flowtex.scene.options import Appearance, AppearanceAttributes
 from flowtex.scene.scene import Change, Scene
@@ -29,7 +29,6 @@ LIGHT = {"ambient": const.AMBIENT_LIGHT, "diffuse": const.DIFFUSE_LIGHT}
 _count = itertools.count(1)
 #: Fields of the appearance that change colours alone.
 COLOURS = ("n_colors", "flip_scalars", "nan_color", "below_color", "above_color")
-FIRST = 1.0  #: Priority of the observer of a frame: before the observers that draw it.
 
 
 def _state(mesh: Any) -> tuple[int, ...]:
@@ -112,12 +111,9 @@ class FlowHandle(AppearanceAttributes):
         self._map = MapOverlay(actor, renderer, scene, surface)
         self._structure = StructureOverlay(actor, renderer, scene, surface)
         self._show_appearance()
-        before, check = weak_callback(self._before_frame), weak_callback(self._check_actor)
+        FrameSteps.of(renderer).add(Step.CHANGES, self._before_frame)
         props = renderer.GetViewProps()
-        self._observed = [
-            (renderer, renderer.AddObserver("StartEvent", before, FIRST)),
-            (props, props.AddObserver("ModifiedEvent", check)),
-        ]
+        self._props_observer = props.AddObserver("ModifiedEvent", weak_callback(self._check_actor))
         self._is_made = True
 
     @property
@@ -266,8 +262,8 @@ class FlowHandle(AppearanceAttributes):
             return
         plotter = self._plotter
         self._plotter = None
-        for subject, tag in self._observed:
-            subject.RemoveObserver(tag)
+        FrameSteps.of(self._renderer).remove(self._before_frame)
+        self._renderer.GetViewProps().RemoveObserver(self._props_observer)
         self._end()
         self.scene.close()
         self._map.close()
@@ -279,7 +275,7 @@ class FlowHandle(AppearanceAttributes):
         if render:
             plotter.render()
 
-    def _before_frame(self) -> None:
+    def _before_frame(self, _renderer: pv.Renderer) -> None:
         """Follow changes of the mesh, and of others that share the colour bar."""
         self.read_changes()
         self._look_at_bar()

@@ -34,7 +34,8 @@ from flowtex.rendering.map_overlay import (
 )
 from flowtex.rendering.shaders import const
 from flowtex.rendering.vtk import FlowSurface
-from flowtex.rendering.vtk.layer import insert_text, plain_actor, weak_callback
+from flowtex.rendering.vtk.frame import FrameSteps, Step
+from flowtex.rendering.vtk.layer import insert_text, plain_actor
 from flowtex.rendering.webgl.marks import RIM_COLOR, RIM_OPACITY, strokes
 from flowtex.scene.scene import Scene
 from flowtex.textures.tiles.structure import STRUCTURE
@@ -63,8 +64,6 @@ class Part(NamedTuple):
 #: surface comes nearer over the width of a line.
 LINES_NEARER = 1e-2
 ABOVE_SHARE = 0.2  #: Additional nearness of a line for each line below it, as a share of that.
-#: Priority of the observer of a frame: after the observers that set the clipping range.
-LAST = -1.0
 POINTS = vtkDataObject.FIELD_ASSOCIATION_POINTS
 #: Point array of a line mesh: the other end of each segment. The shader uses the same name.
 OTHER = "flowtexOther"
@@ -84,8 +83,7 @@ class Overlay:
         self._renderer = weakref.ref(renderer)
         self._surface = surface
         self._parts: list[Part] = []
-        callback = weak_callback(self._before_frame)
-        self._observed = renderer.AddObserver("StartEvent", callback, LAST)
+        FrameSteps.of(renderer).add(Step.OVERLAYS, self._before_frame)
         self.show(scene)
 
     def show(self, scene: Scene) -> None:
@@ -102,7 +100,7 @@ class Overlay:
         """Remove everything from the renderer."""
         self._clear()
         if (renderer := self._renderer()) is not None:
-            renderer.RemoveObserver(self._observed)
+            FrameSteps.of(renderer).remove(self._before_frame)
 
     def _add_lines(
         self,
@@ -153,10 +151,9 @@ class Overlay:
                 renderer.RemoveActor(part.actor)
         self._parts = []
 
-    def _before_frame(self) -> None:
+    def _before_frame(self, renderer: pv.Renderer) -> None:
         """Follow the flow's actor, the camera, and the size of the picture's pixels."""
-        renderer = self._renderer()
-        if renderer is None or not self._parts:
+        if not self._parts:
             return
         is_visible = bool(self._actor.GetVisibility())
         camera = renderer.GetActiveCamera()
@@ -284,14 +281,12 @@ class MapOverlay(Overlay):
             actor.prop.ambient = const.AMBIENT_LIGHT
             actor.prop.diffuse = const.DIFFUSE_LIGHT
 
-    def _before_frame(self) -> None:
+    def _before_frame(self, renderer: pv.Renderer) -> None:
         """Set the colour of places without data, and the globe below the flow."""
-        renderer = self._renderer()
         radius = self._radius
-        if renderer is not None:
-            for actor in self._missing:
-                actor.prop.color = missing_colour(renderer.GetBackground())
-        if renderer is not None and radius is not None and self._actor.GetVisibility():
+        for actor in self._missing:
+            actor.prop.color = missing_colour(renderer.GetBackground())
+        if radius is not None and self._actor.GetVisibility():
             self._include_globe(renderer.GetActiveCamera(), radius)
             # The length of a pixel on the horizon, the farthest visible point of the globe.
             view = self._surface.view
@@ -303,7 +298,7 @@ class MapOverlay(Overlay):
             for part in self._parts:
                 if not part.nearer:
                     part.actor.SetScale(1 - GLOBE_LOWER_PX * pixel / radius)
-        super()._before_frame()
+        super()._before_frame(renderer)
 
     def _include_globe(self, camera: vtkCamera, radius: float) -> None:
         """Extend the clipping range to the globe, which has no bounds in VTK."""
@@ -362,9 +357,9 @@ class StructureOverlay(Overlay):
         self._scene = scene
         self._update()
 
-    def _before_frame(self) -> None:
+    def _before_frame(self, renderer: pv.Renderer) -> None:
         self._update()
-        super()._before_frame()
+        super()._before_frame(renderer)
 
     def _update(self) -> None:
         """Draw the requested structure if it changes, or find it in the background first."""

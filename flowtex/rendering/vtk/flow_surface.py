@@ -41,12 +41,12 @@ from flowtex.rendering.uniforms import (
 )
 from flowtex.rendering.vtk.contexts import check_fork, note_thread
 from flowtex.rendering.vtk.flow_mapper import FlowMapper, set_attributes, surface_mesh
+from flowtex.rendering.vtk.frame import FrameSteps, Step, weak_callback
 from flowtex.rendering.vtk.layer import (
     FlowLayer,
     insert_text,
     observe_draws,
     plain_actor,
-    weak_callback,
     write_uniform,
 )
 from flowtex.rendering.vtk.passes import DeferredPasses
@@ -107,10 +107,8 @@ class FlowSurface:
         self._notify: Callable[[], None] | None = None
         self._reported: set[TileKey] = set()
         self._passes = DeferredPasses.of(renderer)
-        self._observed = [
-            renderer.AddObserver("StartEvent", weak_callback(self._before_frame)),
-            renderer.AddObserver("EndEvent", weak_callback(self._after_frame)),
-        ]
+        FrameSteps.of(renderer).add(Step.SURFACES, self._before_frame)
+        self._end_observer = renderer.AddObserver("EndEvent", weak_callback(self._after_frame))
 
     @property
     def view(self) -> ViewState:
@@ -190,8 +188,8 @@ class FlowSurface:
         """Remove everything from the renderer, and free the graphics card's memory."""
         renderer = self._renderer()
         if renderer is not None:
-            for tag in self._observed:
-                renderer.RemoveObserver(tag)
+            FrameSteps.of(renderer).remove(self._before_frame)
+            renderer.RemoveObserver(self._end_observer)
         self._passes.remove(self)
         self._drop(list(self._tiles))
         self._arrows.close()
@@ -208,10 +206,9 @@ class FlowSurface:
             else:
                 layer.flat_array = None
 
-    def _before_frame(self) -> None:
+    def _before_frame(self, renderer: pv.Renderer) -> None:
         """Choose tiles, shaders and triangles for the camera of the frame."""
-        renderer = self._renderer()
-        if renderer is None or not self._actor.GetVisibility():
+        if not self._actor.GetVisibility():
             self._show([])
             self._passes.hide(self)
             return

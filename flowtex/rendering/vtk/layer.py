@@ -15,7 +15,6 @@ from typing import Any
 import numpy as np
 import pyvista as pv
 from vtkmodules.util.vtkConstants import VTK_FLOAT, VTK_OBJECT
-from vtkmodules.vtkCommonCore import vtkObject
 from vtkmodules.vtkRenderingCore import vtkMapper
 from vtkmodules.vtkRenderingOpenGL2 import vtkOpenGLRenderWindow, vtkShaderProgram, vtkTextureObject
 
@@ -45,6 +44,7 @@ from flowtex.rendering.vtk.flow_mapper import (
     map_attributes,
     set_triangles,
 )
+from flowtex.rendering.vtk.frame import weak_callback
 from flowtex.settings import Settings
 from flowtex.textures.geometry import SurfaceGeometry
 from flowtex.textures.texture_set import LayerPrefetch, TextureSet
@@ -564,17 +564,6 @@ def plain_actor(mesh: pv.PolyData) -> pv.Actor:
     actor.PickableOff()
     actor.UseBoundsOff()
     return actor
-
-
-def weak_callback(method: Callable[..., None]) -> Any:
-    """Return a callback for VTK that does not keep the method's object alive."""
-    reference = weakref.WeakMethod(method)
-
-    def call(_caller: vtkObject, _event: str, *data: Any) -> None:
-        if (bound := reference()) is not None:
-            bound(*data)
-
-    return call
 
 
 def observe_draws(mapper: Any, method: Callable[[vtkShaderProgram | None], None]) -> int:

@@ -27,7 +27,8 @@ from flowtex.rendering.vtk.flow_mapper import (
     map_attributes,
     set_triangles,
 )
-from flowtex.rendering.vtk.layer import FlowLayer, insert_text, observe_draws, weak_callback
+from flowtex.rendering.vtk.frame import FrameSteps, Step
+from flowtex.rendering.vtk.layer import FlowLayer, insert_text, observe_draws
 from flowtex.rendering.vtk.targets import Rectangle, Target
 
 BLEND = 0x0BE2  #: OpenGL's number of blending.
@@ -38,8 +39,6 @@ ALWAYS = 0x0207  #: OpenGL's number of the comparison that is always true.
 MOST_LAYERS = 4096  #: Most layers, a power of two: their numbers are depths.
 COLOUR_AND_DEPTH = 0x4100  #: OpenGL's number of what is cleared.
 SKIPPED = 3  #: Distance in pixels of the samples by which the visible tiles are found.
-#: Priority of the observer: after all others of the start of a frame, before actors are drawn.
-LAST = -1.0
 
 
 class DeferredPasses:
@@ -58,7 +57,7 @@ class DeferredPasses:
         self._alone: tuple[weakref.ref[FlowLayer], _Part, vtkRenderer] | None = None
         #: The whole picture, if the next frames are parts of it.
         self.part: PicturePart | None = None
-        self._observed = renderer.AddObserver("StartEvent", weak_callback(self._draw), LAST)
+        FrameSteps.of(renderer).add(Step.PASSES, self._draw)
 
     @classmethod
     def of(cls, renderer: pv.Renderer) -> DeferredPasses:
@@ -81,11 +80,10 @@ class DeferredPasses:
         self._shown.pop(owner, None)
         self._follow([])
 
-    def _draw(self) -> None:
-        renderer = self._renderer()
+    def _draw(self, renderer: pv.Renderer) -> None:
         surfaces = self._surfaces()
         layers = [layer for surface in surfaces for layer in surface]
-        if renderer is None or not layers:
+        if not layers:
             return
         self._follow(layers)
         window = renderer.GetRenderWindow()
