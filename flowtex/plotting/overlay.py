@@ -33,12 +33,12 @@ from flowtex.rendering.map_overlay import (
     missing_colour,
 )
 from flowtex.rendering.shaders import const
+from flowtex.rendering.structure import STRUCTURE
 from flowtex.rendering.vtk import FlowSurface
 from flowtex.rendering.vtk.frame import FrameSteps, Step
 from flowtex.rendering.vtk.layer import insert_text, plain_actor
 from flowtex.rendering.webgl.marks import RIM_COLOR, RIM_OPACITY, strokes
 from flowtex.scene.scene import Scene
-from flowtex.textures.tiles.structure import STRUCTURE
 
 #: Distance of land behind the surface, as a share of the distance from the eye.
 LAND_FARTHER = 2e-4

@@ -38,7 +38,7 @@ from flowtex.sources.maps import Lines
 from flowtex.sources.opening.dataset_files import dataset_paths, is_dataset_file
 from flowtex.sources.read_files import errors_of, read_files
 from flowtex.textures.tiles.pyramid import Pyramid
-from flowtex.textures.tiles.shared import drawn_speeds, ends_of
+from flowtex.textures.value_ranges import drawn_speeds, ends_of
 from flowtex.trace.store import chosen_lines, judged_lines
 
 WHOLE_NODES = 2_000_000  #: Nodes up to which a dataset is opened as a whole.

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable
+from functools import cache
 from pathlib import Path, PurePosixPath
 from statistics import NormalDist
 from typing import Any
@@ -69,6 +70,12 @@ def shader_source(name: str) -> str:
         raise FileNotFoundError(
             f"the shader {name!r} does not exist; expected one of: {', '.join(shader_names())}"
         )
+    return _text_of(path)
+
+
+@cache
+def _text_of(path: Path) -> str:
+    """Return the text of a file, which is read once in a process."""
     return path.read_text(encoding="utf-8")
 
 

@@ -33,21 +33,15 @@ from flowtex.field.interpolation import at_moment, steps_around
 from flowtex.field.options import FieldOptions
 from flowtex.field.steps import Steps
 from flowtex.rendering.cpu.shade import mean_colours
+from flowtex.rendering.structure import STRUCTURE, Structure, check_structure, shared_structure
 from flowtex.scene.fields import is_tiled, read_field, share_field, with_scalars
 from flowtex.scene.options import ROBUST, SPEED, Appearance, Options
 from flowtex.settings import TABLE, Affects, Settings, SettingsError, Signal
 from flowtex.textures.images import as_picture, load_image
 from flowtex.textures.texture_set import TextureSet, check_noise
 from flowtex.textures.tiles.pyramid import Pyramid
-from flowtex.textures.tiles.shared import (
-    coarsened_field,
-    drawn_speeds,
-    ends_of,
-    shared_pyramid,
-    usual_ends,
-    widened,
-)
-from flowtex.textures.tiles.structure import STRUCTURE, Structure, check_structure, shared_structure
+from flowtex.textures.tiles.shared import coarsened_field, shared_pyramid
+from flowtex.textures.value_ranges import drawn_speeds, ends_of, usual_ends, widened
 from flowtex.trace.slices import TraceSlices
 from flowtex.trace.store import SliceStore, chosen_lines, shared_store
 

@@ -16,12 +16,12 @@ from flowtex._util.colours import NO_COLOURS, ColourScale
 from flowtex.rendering.camera import Camera
 from flowtex.rendering.cpu.render import render
 from flowtex.rendering.mesh_levels import MeshLevels
+from flowtex.rendering.structure import STRUCTURE
 from flowtex.rendering.uniforms import ViewState, uniforms
 from flowtex.rendering.webgl.client_data import ClientData, Colours
 from flowtex.scene.options import Appearance
 from flowtex.scene.scene import Scene
 from flowtex.settings import Settings
-from flowtex.textures.tiles.structure import STRUCTURE
 
 SIZE = (15, 10)
 HALF_MAX = 65504  #: Greatest number in half precision.

@@ -32,6 +32,7 @@ from flowtex.rendering.camera import CAMERA_LIMITS, Camera
 from flowtex.rendering.cpu.noise import noise_lattice, octave
 from flowtex.rendering.cpu.shade import mean_colours
 from flowtex.rendering.map_overlay import map_lines
+from flowtex.rendering.structure import DRAWN_EXTENTS, shared_structure
 from flowtex.rendering.tile_choice import TileView, choose_tiles, cover, wanted_tiles
 from flowtex.rendering.uniforms import ViewState, uniforms
 from flowtex.rendering.webgl.client_data import ClientData
@@ -43,7 +44,6 @@ from flowtex.settings import Settings
 from flowtex.textures.images import as_picture
 from flowtex.textures.texture_set import TextureSet
 from flowtex.textures.tiles.pyramid import Pyramid, TileKey
-from flowtex.textures.tiles.structure import DRAWN_EXTENTS, shared_structure
 from flowtex.textures.tiles.triangle_pyramid import TrianglePyramid
 from flowtex.trace.store import SliceStore
 from flowtex.trace.structure.critical_points import critical_points

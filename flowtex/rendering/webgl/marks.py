@@ -18,10 +18,10 @@ import numpy as np
 from flowtex._util.array_types import Floats, Floats32
 from flowtex._util.colours import rgb
 from flowtex.rendering.map_overlay import USUAL_HEIGHT_PX, WIDTH_RANGE
+from flowtex.rendering.structure import Structure
 from flowtex.rendering.webgl.protocol import Header, Parts
 from flowtex.settings import Settings
 from flowtex.textures.geometry import DrawnSurface
-from flowtex.textures.tiles.structure import Structure
 
 #: Kinds of parts, by the settings that ask for them.
 MARK_PARTS = {
