@@ -258,6 +258,8 @@ def first_choice(library: Library, options: Mapping[str, Any]) -> tuple[str, Cho
             chosen[key] = str(options[key])
     partial_choice = Choice(**chosen)
     names = library.names
+    drawable = tuple(name for name in names if name not in library.unshown)
+    names = drawable or names
     errors = list[Exception]()
     for name in names:
         try:

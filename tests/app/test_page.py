@@ -139,7 +139,10 @@ def test_a_folder_offers_its_files_and_nothing_beside_them(page: Page) -> None:
     items = page.locator(".v-overlay--active .v-list-item")
     items.first.wait_for()  # a menu that is still opening has no text
     names = items.all_inner_texts()
-    assert names == ["block.vts", "series.pvd", "torn.vts"]
+    titles = [name.partition("\n")[0] for name in names]
+    assert titles == ["block.vts", "series.pvd", "torn.vts", "hull.stl"]
+    assert "put them into hull.npy" in names[3]
+    assert items.nth(3).get_attribute("aria-disabled") == "true"
     page.keyboard.press("Escape")
     page.wait_for_selector(".v-overlay--active", state="hidden")
 

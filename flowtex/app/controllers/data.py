@@ -90,8 +90,13 @@ class Data(FlowOpener):
 
     def list_files(self) -> None:
         """Look through the folder for files that have come or gone."""
-        self.names = self.library.names
-        self.state.set(files=list(self.names))
+        names = self.library.names
+        reasons = self.library.unshown
+        self.names = tuple(name for name in names if name not in reasons)
+        unshown = []
+        for name, why in reasons.items():
+            unshown.append({"name": name, "why": why, "final": not self.library.may_open(name)})
+        self.state.set(files=list(self.names), unshown=unshown)
 
     def take_upload(self, name: str, path: Path) -> None:
         """Open a file that the page has sent."""
@@ -143,6 +148,7 @@ class Data(FlowOpener):
     def _fail(self) -> None:
         self._goal = (self.name, self.choice)
         self._show_choice()
+        self.list_files()  # with the reason
 
     def _show(self, flow: LoadedFlow, request: LoadRequest) -> None:
         """Replace the flow by another one; if that fails, it stays."""

@@ -11,7 +11,8 @@ from __future__ import annotations
 import os
 import threading
 from collections import defaultdict
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from contextlib import contextmanager
 from copy import copy
 from dataclasses import dataclass
 from pathlib import Path
@@ -44,10 +45,13 @@ SUFFIXES = frozenset(
         *EARTH_SUFFIXES,
     ]
 ).difference(COMMON)
+ENDINGS = " ".join(sorted(SUFFIXES))  #: The same as text.
 #: Depth to which a folder is searched.
 FOLDER_DEPTH = 4
 #: Most files of a folder that are listed.
 MOST_FILES = 500
+MOST_REASONS = 3  #: Most files that cannot be drawn, in the error of a folder without a flow.
+REASON_LENGTH = 200  #: Most characters of the reason why a file cannot be drawn.
 #: Most files that stay open.
 MOST_SOURCES = 4
 #: Most bytes of the files that stay open.
@@ -127,15 +131,16 @@ class Library:
             SOURCE_BYTES, max_count=MOST_SOURCES
         )
         self._fields: WeakCache[FlowField] = WeakCache()
+        #: Reasons why files could not be drawn, with their identities at that time.
+        self._faults: dict[Opener, tuple[Identity, str]] = {}
+        #: Files of the folder that were not drawable when it was last searched, with the reasons.
+        self.unshown: dict[str, str] = {}
         self._making: defaultdict[Opener, threading.Lock] = defaultdict(threading.Lock)
         has_files = any(isinstance(opener, _Files) for opener in openers.values())
         if has_files or self._folder is not None:
             prepare_readers()
         if not self.names:
-            endings = " ".join(sorted(SUFFIXES))
-            raise FieldError(
-                f"{folder}: the folder has no file that can be opened; expected {endings}"
-            )
+            raise FieldError(_nothing_found(folder, self.unshown))
 
     def branch(self) -> Library:
         """Return a library of the same flows, to which a page can add its own."""
@@ -193,13 +198,46 @@ class Library:
 
     @property
     def names(self) -> tuple[str, ...]:
-        """Names of all flows; the folder is searched again."""
-        openers = dict(self._named)
+        """Names of all flows that may be opened; the folder is searched again."""
+        found: dict[str, Opener] = {}
+        self.unshown = {}
         if self._folder is not None:
             for name, path in find_files(self._folder):
-                openers[name] = _Files((path,))
-        self._openers = openers | self._own
+                reason = _reason_by_ending(path)
+                if reason:
+                    self.unshown[name] = reason
+                else:
+                    found[name] = _Files((path,))
+        self._openers = {**self._named, **found, **self._own}
+        for name, opener in self._openers.items():
+            reason = self._fault(opener)
+            if reason:
+                self.unshown[name] = reason
         return tuple(self._openers)
+
+    def may_open(self, name: str) -> bool:
+        """Return whether a name, when last listed, was one that may be opened."""
+        return name in self._openers
+
+    def _fault(self, opener: Opener) -> str:
+        """Return the reason why a file could not be drawn, empty if there is none or it changed."""
+        if opener not in self._faults:
+            return ""
+        identity, reason = self._faults[opener]
+        if identity == _identity(opener):
+            return reason
+        return ""
+
+    @contextmanager
+    def _noting_fault(self, opener: Opener) -> Iterator[None]:
+        """Note why a file cannot be drawn."""
+        identity = _identity(opener)
+        try:
+            yield
+        except (FieldError, OSError) as error:
+            if isinstance(opener, _Files):
+                self._faults[opener] = identity, reason_text(error, opener.paths)
+            raise
 
     def source(self, name: str) -> FlowSource:
         """Return a source, and open it if it is not open or its file has changed.
@@ -210,9 +248,12 @@ class Library:
             When the name is unknown, or the source cannot be read.
         """
         opener = self._opener(name)
-        return self._sources.get(
-            opener, opener, lambda source: source.alive and source.identity == _identity(opener)
-        )
+        with self._noting_fault(opener):
+            return self._sources.get(
+                opener,
+                opener,
+                lambda source: source.alive and source.identity == _identity(opener),
+            )
 
     def _opener(self, name: str) -> Opener:
         """Return the function that opens a flow by its name."""
@@ -272,7 +313,13 @@ class Library:
             with self._making[opener]:
                 return source.field(choice.vectors or None, choice.plane, choice.block or None)
 
-        return self._fields.get((opener, choice, _identity(opener)), make)
+        key = (opener, choice, _identity(opener))
+        if choice != self.complete(name, Choice()):  # another choice may be drawn
+            return self._fields.get(key, make)
+        with self._noting_fault(opener):
+            field = self._fields.get(key, make)
+        self._faults.pop(opener, None)
+        return field
 
 
 def _source_of(flow: Any, options: dict[str, Any]) -> FlowSource:
@@ -329,6 +376,48 @@ def _identity(opener: Opener) -> Identity:
     return ()
 
 
+def reason_text(error: Exception, paths: Iterable[Path]) -> str:
+    """Return an error about files as a reason to show beside their name: without their folders.
+
+    Parameters
+    ----------
+    error
+        The error of reading the files.
+    paths
+        Their paths, which are private to the server.
+
+    Returns
+    -------
+    str
+        The reason, of one line and at most ``REASON_LENGTH`` characters.
+    """
+    text = " ".join(str(error).split()) or type(error).__name__
+    for path in paths:
+        for place in (path, path.resolve()):
+            text = text.replace(f"{place.parent}{os.sep}", "")
+        text = text.removeprefix(f"{path.name}: ")
+    if isinstance(error, OSError) and error.strerror:
+        text = error.strerror
+    return shortened(text, REASON_LENGTH)
+
+
+def _reason_by_ending(path: Path) -> str:
+    """Return why a file cannot be drawn, by its ending; empty if it may be."""
+    beside = path.with_suffix(".npy")
+    if path.suffix.lower() in WITHOUT_VECTORS and not beside.exists():
+        return f"a surface without vectors; put them into {beside.name}, one row for each point"
+    return ""
+
+
+def _nothing_found(folder: object, unshown: Mapping[str, str]) -> str:
+    """Return the error of a folder without a flow."""
+    text = f"{folder}: the folder has no file that can be opened; expected {ENDINGS}"
+    reasons = []
+    for name, reason in list(unshown.items())[:MOST_REASONS]:
+        reasons.append(f"{name}: {reason}")
+    return ". ".join([text, *reasons])
+
+
 def _free(name: str, taken: Iterable[str]) -> str:
     free = name
     number = 1
@@ -370,11 +459,4 @@ def find_files(folder: Path) -> list[tuple[str, Path]]:
         # The solution of a PLOT3D pair is opened along with its grid.
         if path.suffix.lower() == ".bin" and find_grid(path) not in (None, path):
             members.add(path)
-    opened = []
-    for name, path in files:
-        lacks_vectors = path.suffix.lower() in WITHOUT_VECTORS
-        if lacks_vectors and not path.with_suffix(".npy").exists():
-            continue
-        if path not in members:
-            opened.append((name, path))
-    return opened
+    return [(name, path) for name, path in files if path not in members]

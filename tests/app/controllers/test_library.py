@@ -12,6 +12,7 @@ from small_pages import small
 
 from flowtex import FlowField, examples
 from flowtex.app import Choice, Library
+from flowtex.app.controllers.library import reason_text
 from flowtex.errors import FieldError
 from flowtex.pyramid import build
 from flowtex.scene.fields import TracedFlow
@@ -39,6 +40,56 @@ def test_members_of_a_series_are_folded_and_surfaces_without_vectors_left_out(fo
     assert library.names == ("series.pvd",)
     with pytest.raises(FieldError, match="is not among those"):
         library.source("hull.stl")
+
+
+def test_reasons_of_undrawable_files(folder: Path) -> None:
+    """A surface without vectors, and files that cannot be read, have a reason and no path."""
+    (folder / "torn.vts").write_text("<VTKFile", encoding="utf-8")
+    pv.Plane().cast_to_unstructured_grid().save(folder / "still.vtu")
+    library = Library.of(folder)
+    assert library.names == ("series.pvd", "still.vtu", "torn.vts")
+    because = "a surface without vectors; put them into hull.npy, one row for each point"
+    assert library.unshown == {"hull.stl": because}
+    assert not library.may_open("hull.stl")
+    for name in ("torn.vts", "still.vtu"):
+        with pytest.raises(FieldError):
+            library.field(name, library.complete(name, Choice()))
+    assert library.names == ("series.pvd", "still.vtu", "torn.vts")
+    assert list(library.unshown) == ["hull.stl", "still.vtu", "torn.vts"]
+    for name, reason in library.branch().unshown.items():
+        assert str(folder) not in reason and "\n" not in reason
+        assert 10 < len(reason) <= 200
+        assert not reason.startswith(name)
+    assert "vectors" in library.unshown["still.vtu"]
+    # A file that is written again may be drawn.
+    gyre(folder / "torn.vts", 1.0)
+    assert library.names == ("series.pvd", "still.vtu", "torn.vts")
+    assert "torn.vts" not in library.unshown
+    library.field("torn.vts", library.complete("torn.vts", Choice()))
+
+
+def test_undrawable_part_is_no_fault_of_a_file(tmp_path: Path) -> None:
+    gyre(tmp_path / "flow.vts", 0.0)
+    library = Library.of(tmp_path)
+    with pytest.raises(FieldError):
+        library.field("flow.vts", Choice(vectors="missing"))
+    assert library.names == ("flow.vts",) and library.unshown == {}
+
+
+def test_folder_without_a_flow_names_reasons(tmp_path: Path) -> None:
+    pv.Sphere().save(tmp_path / "hull.stl")
+    with pytest.raises(
+        FieldError, match=r"no file that can be opened.*hull.stl: a surface without"
+    ):
+        Library.of(tmp_path)
+
+
+def test_reason_has_no_path(tmp_path: Path) -> None:
+    path = tmp_path / "flow.vtu"
+    error = FieldError(f"{path}: cannot be read: {tmp_path}/flow.vtu is\nnot XML")
+    assert reason_text(error, [path]) == "cannot be read: flow.vtu is not XML"
+    missing = FileNotFoundError(2, "No such file or directory", str(path))
+    assert reason_text(missing, [path]) == "No such file or directory"
 
 
 def test_pyramids_in_a_folder_are_offered(folder: Path) -> None:
