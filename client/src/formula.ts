@@ -374,6 +374,7 @@ export class FormulaSource {
         count: slices.count - slices.sides * (slices.lags.length - lags.length),
         extra: [],
         unit: slices.unit * share,
+        lagUnit: slices.lagUnit * share,
         cell: slices.cell * share,
         critical: slices.critical * share,
         trace: {

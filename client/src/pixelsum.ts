@@ -124,6 +124,8 @@ export function noiseAround(
 /** One look-up of the noise. */
 export interface Sample {
   position: Vector;
+  /** How far back along the path, negative ahead: a length, or a time if slices are by time. */
+  lag: number;
   /** Share in the mean. */
   weight: number;
   /** Of mean zero and deviation one, and the same as it is drawn by itself, from 0 to 1. */
@@ -155,6 +157,8 @@ export interface PixelSum {
 
 interface Step {
   displacement: Vector;
+  /** In units of the node, negative ahead. */
+  lag: number;
   weight: number;
 }
 
@@ -206,7 +210,7 @@ function sideSteps(
     const bend = bendAt();
     const at = (lateness: number) => before.map((x, n) => x + bend[n] * lateness) as Vector;
     const weight = alive * kernelAt(sign, k / (count + 1), parting, u, c);
-    result.push({ displacement: scale(at(lag - from), lag * sign * by), weight });
+    result.push({ displacement: scale(at(lag - from), lag * sign * by), lag: -sign * lag, weight });
     // Evenly spaced along the path where the particle is faster or slower there.
     step = stepAt(at(2 * lag - from), bend);
   }
@@ -259,7 +263,7 @@ export function pixelSum({ at, settings, camera, rows }: PixelPlace): PixelSum |
     sideSteps(layers, side, spacing, count, parting, u, c),
   );
   const own = Math.max(kernelAt(1, 0, parting, u, c), c.LEAST_WEIGHT[0]);
-  const steps = [...back.reverse(), { displacement: [0, 0, 0] as Vector, weight: own }, ...ahead];
+  const steps = [...back.reverse(), { displacement: [0, 0, 0] as Vector, lag: 0, weight: own }, ...ahead];
 
   const octaves = clamp(2 * Math.log2(grain / Number(u.u_noiseFinest)), 0, c.LAST_OCTAVE[0]);
   const octave = Math.floor(octaves);
@@ -278,11 +282,13 @@ export function pixelSum({ at, settings, camera, rows }: PixelPlace): PixelSum |
   const fade = moves ? slow ** 2 * (3 - 2 * slow) : 0;
   const gain = (fade * alone * total(weights)) / Math.sqrt(squares * total(variance));
   const moved = mover(at);
-  const samples = steps.map(({ displacement, weight }) => {
+  const lagUnit = layers(0)[3] * slices.lagUnit;
+  const samples = steps.map(({ displacement, lag, weight }) => {
     const [fine, coarse] = noise(displacement);
     const value = (shares[0] * fine + shares[1] * coarse) / alone;
     const position = moved(displacement) ?? at.position;
-    return { position, weight: weight / total(weights), noise: value, grey: greyOf(value, 1, c) };
+    const share = weight / total(weights);
+    return { position, lag: lag * lagUnit, weight: share, noise: value, grey: greyOf(value, 1, c) };
   });
   const mean = total(samples.map((sample) => sample.weight * sample.noise));
   return {

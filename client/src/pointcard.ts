@@ -6,9 +6,9 @@ import type { Timer } from "./lifetime.ts";
 import { lonLatOf, lonLatText } from "./lonlat.ts";
 import { speedAt, velocityOnEarth } from "./onearth.ts";
 import type { Options } from "./options.ts";
-import { type Dot, type Line, pathShapes, type Place } from "./samples.ts";
+import { type Dot, type Line, pathShapes, type Place, sampleChart } from "./samples.ts";
 import { valuesAt, type Found, type Point } from "./picking.ts";
-import type { Sample } from "./pixelsum.ts";
+import { pixelSum, type Sample } from "./pixelsum.ts";
 import { pathThrough, type PointPath } from "./pointpath.ts";
 import type { Header, Part } from "./protocol.ts";
 import type { Vector } from "./vectors.ts";
@@ -68,6 +68,7 @@ export class PointCard {
   readonly overlay = shape("svg", {});
   private readonly host: Viewer;
   private readonly list = dom("dl");
+  private readonly chart = dom("div");
   private chosen: Found | null = null;
   /** The point that was read last, where a host reads them, and the number of what it was asked. */
   private read: Point | null = null;
@@ -84,7 +85,11 @@ export class PointCard {
     this.overlay.setAttribute("class", "path");
     const button = dom("button", { type: "button", class: "link" }, ["Close"]);
     button.addEventListener("click", () => this.close());
-    this.element.append(dom("div", { class: "first" }, [dom("span", {}, [TITLE]), button]), this.list);
+    this.element.append(
+      dom("div", { class: "first" }, [dom("span", {}, [TITLE]), button]),
+      this.list,
+      this.chart,
+    );
   }
 
   /** Show the path through what is at (x, y), from -1 to 1, right and up, in all views, or none. */
@@ -178,14 +183,15 @@ export class PointCard {
       return this.show(now, position, []);
     }
     const at = { scene, moment: shown, place, position };
-    const path = { ...pathThrough(at, settings, camera, stage.clientHeight), ...exact };
+    const pixel = { at, settings, camera, rows: stage.clientHeight };
+    const summed = exact || options.explainer ? undefined : pixelSum(pixel)?.samples;
+    const path = { ...pathThrough(at, settings, camera, stage.clientHeight), samples: summed, ...exact };
     const places = this.host.parts.get("lonlat");
     const eastNorth = velocityOnEarth(at, places) ?? undefined;
     const speed = exact ? undefined : speedAt(at, places);
     const now = { ...point, values: valuesAt(scene, shown, place), eastNorth, speed };
     this.report(now);
     this.tell(now, path, header, camera);
-    const pixel = { at, settings, camera, rows: stage.clientHeight };
     const samples = options.explainer?.explain(pixel) ?? [];
     this.show(path, position, samples);
   }
@@ -198,7 +204,8 @@ export class PointCard {
     this.host.options.onPoint?.(this.chosen.point);
   }
 
-  private tell(point: Point, { velocity }: PointPath, header: Header, camera: Camera): void {
+  private tell(point: Point, path: PointPath, header: Header, camera: Camera): void {
+    const { velocity, samples = [] } = path;
     const { unit } = header.speed;
     const { eastNorth, speed } = point;
     // On a map this is the speed on the Earth, and not in the surface.
@@ -226,6 +233,8 @@ export class PointCard {
     this.list.replaceChildren(
       ...[...lines].flatMap(([word, value]) => [dom("dt", {}, [word]), dom("dd", {}, [value])]),
     );
+    const lagUnit = header.slices.byTime ? header.slices.timeUnit : header.lengthUnit;
+    this.chart.replaceChildren(...(samples.length > 1 ? [sampleChart(samples, lagUnit)] : []));
     this.element.hidden = !this.hasNumbers || this.host.options.explainer !== undefined;
   }
 

@@ -4,6 +4,7 @@
 import type { Camera } from "./camera.ts";
 import { type Corners, interpolated, placeIn } from "./mesh.ts";
 import { isSignFree, type Settings } from "./protocol.ts";
+import type { PathSample } from "./samples.ts";
 import type { Four, Scene } from "./scene.ts";
 import { isMoving, type Moment } from "./uniforms.ts";
 import { add, clamp, cross, dot, fromFrame, length, scale, subtract, unit, type Vector } from "./vectors.ts";
@@ -40,6 +41,8 @@ export interface PointPath {
   directed: boolean;
   /** Velocity in the surface. */
   velocity: Vector;
+  /** The samples that are summed, from the farthest behind, where they are known. */
+  samples?: PathSample[];
 }
 
 /** Where a path is looked for: a scene, and a place (i, j) between its nodes. */

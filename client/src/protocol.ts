@@ -310,6 +310,9 @@ export interface Header {
     lags: number[];
     sides: number;
     unit: number;
+    /** One unit of lag of a node whose unit is 1: a length, or a time if slices are by time. */
+    lagUnit: number;
+    byTime: boolean;
     /** Typical speed where there are several steps, by which the grains change in time. */
     pace: number;
     /** Lengths of a typical cell, and of the longest in which the flow turns. */

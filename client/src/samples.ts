@@ -1,4 +1,6 @@
-// Shapes of a path and of its samples over a picture.
+// Shapes of a path and of its samples over a picture, and a small chart of the samples.
+
+import { dom, numberText, withUnit } from "./dom.ts";
 
 export type Place = [number, number];
 export type Line = Place[];
@@ -74,4 +76,50 @@ export function pathShapes({ path, sampled, point, directed, dots = [] }: PathLi
     ...ring("point-casing"),
     ...ring("point"),
   ];
+}
+
+/** A sample of a path: its lag, negative ahead, its share in the mean, and the noise, also as a grey. */
+export interface PathSample {
+  lag: number;
+  weight: number;
+  /** Null for an image in place of the noise. */
+  noise: number | null;
+  grey: number;
+}
+
+/** Digits of a lag and of a weight in the chart. */
+const SAMPLE_DIGITS = 2;
+
+/** The place of a sample along the path in words. */
+function lagText(lag: number, unit: string): string {
+  const text = withUnit(numberText(Math.abs(lag), SAMPLE_DIGITS), unit);
+  if (lag === 0) return "here";
+  return lag > 0 ? `${text} behind` : `${text} ahead`;
+}
+
+/** A sample in words. */
+export function sampleText({ lag, weight, noise }: PathSample, unit: string): string {
+  const share = `weight ${numberText(weight, SAMPLE_DIGITS)}`;
+  const value = noise === null ? [] : [`noise ${numberText(noise, SAMPLE_DIGITS)}`];
+  return [lagText(lag, unit), share, ...value].join(", ");
+}
+
+/** A chart of samples: a bar for each, as high as its weight and as grey as its noise. */
+export function sampleChart(samples: PathSample[], unit: string): HTMLElement {
+  const most = Math.max(...samples.map(({ weight }) => weight));
+  const bars = samples.map((sample) => {
+    const bar = dom("i");
+    const level = Math.round(255 * sample.grey);
+    bar.style.height = `${(100 * sample.weight) / most}%`;
+    bar.style.background = `rgb(${[level, level, level].join()})`;
+    const words = sampleText(sample, unit);
+    return dom("li", { title: words }, [bar, dom("span", { class: "unseen" }, [words])]);
+  });
+  const count = samples.length === 1 ? "1 sample" : `${samples.length} samples`;
+  const ends = [samples[0], samples[samples.length - 1]].map(({ lag }) => dom("span", {}, [lagText(lag, unit)]));
+  return dom("div", { class: "samples" }, [
+    dom("div", { class: "caption" }, [`${count}: the height is the weight, the grey the noise`]),
+    dom("ol", { "aria-label": "Samples along the path" }, bars),
+    dom("div", { class: "ends", "aria-hidden": "true" }, ends),
+  ]);
 }

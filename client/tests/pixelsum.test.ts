@@ -20,7 +20,9 @@ interface Case {
   place: [number, number];
   position: Vector;
   points: number[][];
+  lags: number[];
   weights: number[];
+  greys: number[];
   noise: number[];
   level: number;
   gain: number;
@@ -82,6 +84,12 @@ for (const [name, each] of Object.entries(cases.sums)) {
       each.weights,
       "weights",
     );
+    close(
+      sum.samples.map(({ lag }) => lag),
+      each.lags,
+      "lags",
+    );
+    sum.samples.forEach(({ grey }, n) => assert.ok(Math.abs(grey - each.greys[n]) < 0.01, `grey ${n}`));
     close(
       sum.samples.map(({ position: point }) => point),
       each.points,

@@ -60,7 +60,9 @@ def test_the_path_is_that_of_the_renderer(client: ClientPage, name: str) -> None
     point = client.page.evaluate("() => viewers[0].card.choose(0.2, -0.24)")
     drawn = client.page.evaluate(DRAWN)
     i, j = point["index"]
-    judge = probe(scene, (j, i), pixel=camera, size=SIZE)
+    # The view may stand back from the whole surface.
+    seen = Camera.from_dict(client.page.evaluate("() => viewers[0].camera.state"), camera)
+    judge = probe(scene, (j, i), pixel=seen, size=SIZE)
     np.testing.assert_allclose(drawn["point"], judge.field_values.position, atol=2e-3)
     length = float(np.linalg.norm(np.diff(judge.points, axis=0), axis=1).sum())
     assert length > 0
@@ -82,6 +84,16 @@ def test_the_path_is_that_of_the_renderer(client: ClientPage, name: str) -> None
         along = np.asarray(judge.field_values.velocity)
         np.testing.assert_allclose(drawn["velocity"], along, atol=0.03 * speed)
     assert drawn["directed"] == (name != "no sign")
+    # The chart has the samples of the judge, unless they move or an image takes their place.
+    samples = drawn.get("samples")
+    assert (samples is None) == (name in ("moving", "image"))
+    if samples is not None and drawn["directed"]:
+        longest = np.abs(judge.lags).max()
+        lags = [sample["lag"] for sample in samples]
+        np.testing.assert_allclose(lags, judge.lags, atol=0.02 * longest)
+        weights = [sample["weight"] for sample in samples]
+        np.testing.assert_allclose(weights, judge.weights, atol=0.02 * max(weights))
+        assert len(client.page.query_selector_all(".samples li")) == len(judge.lags)
 
 
 def leaving(*, share: float = 0.6) -> FlowField:

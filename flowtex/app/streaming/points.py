@@ -169,7 +169,7 @@ def path_of(found: Probe, index: tuple[float, float], field: FlowField) -> Heade
     """Return a point and the path through it for the client.
 
     ``path`` and ``sampled`` are points of the whole path and of the part with samples, downstream
-    where the flow has a sign.
+    where the flow has a sign; ``samples`` are as in ``client/src/pointpath.ts``.
     """
     # Far beyond the samples the slices are too coarse to show, and no picture needs them.
     reach = float(np.fmax(np.abs(found.lags).max(), FEWEST_SAMPLES * abs(found.step)))
@@ -186,8 +186,21 @@ def path_of(found: Probe, index: tuple[float, float], field: FlowField) -> Heade
             "sampled": np.concatenate([path[inside], found.points])[order].tolist(),
             "directed": not field.sign_free,
             "velocity": _in_surface(found, field).tolist(),
+            "samples": samples_of(found),
         },
     }
+
+
+def samples_of(found: Probe) -> list[dict[str, float | None]]:
+    """Return the samples of a point for the client; an image has no noise."""
+    samples = []
+    for n, grey in enumerate(found.greys):
+        noise = None
+        if found.noise.ndim == 1:
+            noise = float(found.noise[n])
+        sample = {"lag": float(found.lags[n]), "weight": float(found.weights[n])}
+        samples.append({**sample, "noise": noise, "grey": float(grey)})
+    return samples
 
 
 def _in_surface(found: Probe, field: FlowField) -> Floats:

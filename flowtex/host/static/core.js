@@ -656,16 +656,16 @@ from[axis]+1),drawn=first.map((at,axis)=>at-from[axis]),shape2=last.map((at,axis
 to},{middle,part:padded}=grid.padded(window2),share=2**-grid.doublings(level),lags=[...slices.lags.filter(lag=>lag<pyramid.
 pathCells),pyramid.pathCells],texels=n=>({before:BEFORE,size:BEFORE*Math.ceil((n+2*BEFORE)/BEFORE)}),own={geometry:{...geometry,
 shape:shape2,rows:texels(shape2[0]),columns:texels(shape2[1]),levels:LEVELS},slices:{...slices,lags,count:slices.count-slices.
-sides*(slices.lags.length-lags.length),extra:[],unit:slices.unit*share,cell:slices.cell*share,critical:slices.critical*share,
-trace:{...trace,nodes,drawn,first:drawn.map(n=>n-BEFORE),middle,unit:trace.unit*share,timed:trace.timed&&{...trace.timed,
-unit:trace.timed.unit*share}}}},prefix=`tile/${nameOf(key)}/`,text=new TextEncoder().encode(JSON.stringify(own)),parts=this.
-parts(window2,steps,drawn,shape2,prefix);return[this.named(`${prefix}header`,{data:text,shape:[text.length]}),this.named(
-`${prefix}padded`,padded),this.named(`${prefix}unit`,{data:new Uint16Array(nodes[0]*nodes[1]).fill(HALF_ONE),shape:nodes}),
-this.named(`${prefix}mesh`,this.blocks(key,shape2)),...parts]}blocks(key,shape2){let{mesh,pyramid}=this.header,[rows,columns]=shape2.
-map(n=>Math.ceil((n-1)/mesh.tileCells)),data=new Float32Array(rows*columns*PLACE2),place=placesOf(this.header),tileBlocks=pyramid?.
-tileBlocks??1;for(let block=0;block<rows*columns;block+=1){let[row2,column]=[Math.floor(block/columns),block%columns],where=place?.(
-key[0],key[1]*tileBlocks+row2,key[2]*tileBlocks+column)??[];data.set(where,block*PLACE2)}return{data,shape:[rows,columns,
-PLACE2]}}};var FAILED_MS=1e4,SPARE_MS=20,AT_ONCE=4,SPARE_STEPS=4,ALL_COARSE="The surface is shown coarse",COARSE="A part of the sur\
+sides*(slices.lags.length-lags.length),extra:[],unit:slices.unit*share,lagUnit:slices.lagUnit*share,cell:slices.cell*share,
+critical:slices.critical*share,trace:{...trace,nodes,drawn,first:drawn.map(n=>n-BEFORE),middle,unit:trace.unit*share,timed:trace.
+timed&&{...trace.timed,unit:trace.timed.unit*share}}}},prefix=`tile/${nameOf(key)}/`,text=new TextEncoder().encode(JSON.
+stringify(own)),parts=this.parts(window2,steps,drawn,shape2,prefix);return[this.named(`${prefix}header`,{data:text,shape:[
+text.length]}),this.named(`${prefix}padded`,padded),this.named(`${prefix}unit`,{data:new Uint16Array(nodes[0]*nodes[1]).
+fill(HALF_ONE),shape:nodes}),this.named(`${prefix}mesh`,this.blocks(key,shape2)),...parts]}blocks(key,shape2){let{mesh,pyramid}=this.
+header,[rows,columns]=shape2.map(n=>Math.ceil((n-1)/mesh.tileCells)),data=new Float32Array(rows*columns*PLACE2),place=placesOf(
+this.header),tileBlocks=pyramid?.tileBlocks??1;for(let block=0;block<rows*columns;block+=1){let[row2,column]=[Math.floor(
+block/columns),block%columns],where=place?.(key[0],key[1]*tileBlocks+row2,key[2]*tileBlocks+column)??[];data.set(where,block*
+PLACE2)}return{data,shape:[rows,columns,PLACE2]}}};var FAILED_MS=1e4,SPARE_MS=20,AT_ONCE=4,SPARE_STEPS=4,ALL_COARSE="The surface is shown coarse",COARSE="A part of the sur\
 face is shown coarse",ABSENT_STEP="A time step cannot be shown",Failures=class{times=new Map;now;constructor(now=()=>performance.
 now()){this.now=now}add(name){this.times.set(name,this.now())}has(name){return this.now()-(this.times.get(name)??-1/0)<FAILED_MS}},
 Queue=class{source;taker;running=new Map;jobs=[];failed=new Failures;constructor(source,taker){this.source=source,this.taker=
@@ -1701,7 +1701,67 @@ filter(isFree):[],ring=kind=>point?[["circle",{class:kind,cx:point[0],cy:point[1
 "whole-casing"),...lines(path,"whole"),...lines(sampled,"casing"),...lines(sampled,"sampled"),...heads.map(head=>["polyg\
 on",{class:"arrow",points:textOf2(head)}]),...dots.map(({place:[cx,cy],radius,grey})=>{let fill=`rgb(${[grey,grey,grey].
 map(x=>Math.round(255*x)).join()})`;return["circle",{class:"dot",cx,cy,r:radius,fill}]}),...ring("point-casing"),...ring(
-"point")]}var TITLE2="Path through this point",FEWEST_DIGITS=4,MOST_DIGITS=14,VELOCITY_DIGITS=3,PATIENCE_MS=5e3,RETRY_MS=40,PLACES_IN_VIEW=200,
+"point")]}var SAMPLE_DIGITS=2;function lagText(lag,unit3){let text=withUnit(numberText(Math.abs(lag),SAMPLE_DIGITS),unit3);
+return lag===0?"here":lag>0?`${text} behind`:`${text} ahead`}function sampleText({lag,weight,noise},unit3){let share=`we\
+ight ${numberText(weight,SAMPLE_DIGITS)}`,value=noise===null?[]:[`noise ${numberText(noise,SAMPLE_DIGITS)}`];return[lagText(
+lag,unit3),share,...value].join(", ")}function sampleChart(samples,unit3){let most=Math.max(...samples.map(({weight})=>weight)),
+bars=samples.map(sample=>{let bar=dom("i"),level=Math.round(255*sample.grey);bar.style.height=`${100*sample.weight/most}\
+%`,bar.style.background=`rgb(${[level,level,level].join()})`;let words=sampleText(sample,unit3);return dom("li",{title:words},
+[bar,dom("span",{class:"unseen"},[words])])}),count2=samples.length===1?"1 sample":`${samples.length} samples`,ends2=[samples[0],
+samples[samples.length-1]].map(({lag})=>dom("span",{},[lagText(lag,unit3)]));return dom("div",{class:"samples"},[dom("di\
+v",{class:"caption"},[`${count2}: the height is the weight, the grey the noise`]),dom("ol",{"aria-label":"Samples along \
+the path"},bars),dom("div",{class:"ends","aria-hidden":"true"},ends2)])}function constantsOf(shader){let lines=shader.matchAll(/^const \w+ FLOWTEX_(\w+) =\s*(?:\w+\()?([^;]*?)\)?;/gm);return Object.
+fromEntries(Array.from(lines,([,name,values])=>[name,values.split(",").map(value=>Number(value.trim().replace(/u$/,"")))]))}
+function latticeOf(point,octave,u,c){let isOdd=(octave&1)===1,cells=2**(octave>>1),inverse2=(isOdd?Math.SQRT1_2:1)/cells/
+Number(u.u_noiseFinest),finest=isOdd?u.u_noiseOriginOdd:u.u_noiseOriginEven,past=isOdd?u.u_noiseRestOdd:[0,0,0],origin=finest.
+map(n=>Math.floor(n/cells)),rest=finest.map((n,axis)=>(n-origin[axis]*cells+past[axis])/cells),key=origin.map((n,axis)=>Math.
+imul(n,c.AXIS_PRIMES[axis])),salt=Math.imul(octave,c.OCTAVE_PRIME[0])+Math.imul(Number(u.u_seed),c.SEED_PRIME[0]);return key[0]+=
+salt,{here:add(rest,point,inverse2),inverse:inverse2,key,origin,salt}}function scatter(key,c){let whole=key>>>0;return Math.
+imul(whole^whole>>>c.HASH_SHIFT[0],c.HASH_FACTORS[0])}function sparseGrain(cell,{salt},c){let[all]=c.BLOCK_BITS,bits=Math.
+floor(all/cell.length),hash=0,place=salt>>>31<<all;cell.forEach((n,axis)=>{let block=n>>>bits,key=Math.imul(block,c.AXIS_PRIMES[axis])+
+(axis===0?salt:0);hash^=scatter(key,c),place|=(n&2**bits-1)<<bits*axis,place^=(block&1)<<all});let isBright=Math.imul(hash,
+c.HASH_FACTORS[1])>>>32-all===place;return c.MOST_GRAIN[0]*(isBright?c.SPARSE_HIGH[0]:-c.SPARSE_LOW[0])}function octaveAt(lattice,displacement,c,axes,isSparse2){
+let{here,inverse:inverse2,key,origin}=lattice,sides=add(here,displacement,inverse2).slice(0,axes).map((x,axis)=>{let low=Math.
+floor(x),hash=n=>scatter(key[axis]+Math.imul(n,c.AXIS_PRIMES[axis]),c);return{low,hashes:[hash(low),hash(low+1)],shares:[
+1-x+low,x-low]}}),sum=0;for(let corner=0;corner<2**axes;corner+=1){let side=axis=>corner>>axis&1,hash=sides.reduce((all,{
+hashes},axis)=>all^hashes[side(axis)],0),share=sides.reduce((all,{shares:shares2},axis)=>all*shares2[side(axis)],1),cell=sides.
+map(({low},axis)=>origin[axis]+low+side(axis)),grain=isSparse2?sparseGrain(cell,lattice,c):Math.imul(hash,c.HASH_FACTORS[1]);
+sum+=share*grain}let spread=(all,{shares:[a,b]})=>all*(1-2*a*b);return sum/Math.sqrt(sides.reduce(spread,1)*c.GRAIN_VARIANCE[0])}
+function noiseAround(local,octave,isPlanar,isSparse2,u,c){let point=add(local,scale2(u.u_noiseOrigin,-1)),[fine,coarse]=[
+0,1].map(n=>latticeOf(point,octave+n,u,c)),axes=isPlanar?2:3;return displacement=>[octaveAt(fine,displacement,c,axes,isSparse2),
+octaveAt(coarse,displacement,c,axes,isSparse2)]}function kernelAt(side,t,parting,u,c){return u.u_kernel===c.KERNEL_BOX[0]?
+1:u.u_kernel!==c.KERNEL_RAMP[0]?.5+.5*Math.cos(Math.PI*t):u.u_sides===1?1-t:(.5+.5*side*parting)*(1-side*t)}function sideSteps(layers,side,spacing,count2,parting,u,c){
+let lags=u.u_lags,slope=layer=>layers(layer).slice(0,3),by=layers(0)[3]*Number(u.u_unit),first=side*lags.length,end=Math.
+min(layers(first+1)[3],lags[lags.length-1]),sign=side?1:-1,[before,after]=[slope(0),slope(first+1)],[from,m]=[0,0],bendAt=()=>scale2(
+subtract2(after,before),1/(lags[m]-from)),stepAt=(along2,bend)=>{let least=Math.max(Math.sqrt(length2(bend)*spacing/by),
+c.LEAST_SPEED[0]);return spacing/by/Math.max(length2(along2),least)},[lag,step]=[0,stepAt(before,bendAt())],result2=[];for(let k=1;k<
+count2+1;k+=1){lag+=step;let alive=clamp((end-lag)/step+1,0,1)*Math.min(count2-k+1,1);if(!alive)break;for(;lag>lags[m]&&
+m<lags.length-1;m+=1)[before,from]=[after,lags[m]],after=slope(first+m+2);let bend=bendAt(),at=lateness=>before.map((x,n)=>x+
+bend[n]*lateness),weight=alive*kernelAt(sign,k/(count2+1),parting,u,c);result2.push({displacement:scale2(at(lag-from),lag*
+sign*by),lag:-sign*lag,weight}),step=stepAt(at(2*lag-from),bend)}return result2}function shared(apart,near,c){let total2=1;
+for(let m=1;m<=c.SHARED_TERMS[0];m+=1){let d=m*m*apart*apart;if(d>c.BELL_END[0])break;total2+=2*near**(m*m)*Math.exp(-d*
+(c.BELL[0]+c.BELL_BEND[0]*d))}return total2}var total=values=>values.reduce((sum,value)=>sum+value,0);function greyOf(value,contrast,c){
+return 1/(1+Math.exp(-c.TONE_SLOPE[0]*contrast*value))}function pixelSum({at,settings,camera,rows}){let{header}=at.scene,
+{geometry,slices,shaders}=header;if(header.image||isMoving(header,settings,!0))return null;let c=constantsOf(shaders.fragment),
+focus=camera.state.focal_point,view={...{eye:camera.eye,between:at.moment[2],time:slices.times[0],clock:0,still:!0},focus,
+anchor:[0,0,0],density:1,pixel:1},u=uniforms(header,settings,view),grain=grainAt(at,settings,camera,rows),spacing=Number(
+u.u_spacing)*grain,layers=layersAt(at),moves=length2(layers(0).slice(0,3))>c.LEAST_SPEED[0],sides=moves?[...Array(Number(
+u.u_sides)).keys()]:[],areSparse=isSparse(header,settings),set=Number(u.u_samples),whole=(u.u_sides===2?Math.floor(set/2):
+set-1)*stretchAt(at,settings,camera),sine=areSparse&&!isSignFree(header)?partingAt(at,.5*whole*spacing):0,cosine=Math.sqrt(
+Math.max(1-sine**2,0)),parting=clamp(2*sine,0,1),together=c.TOGETHER[0]*cosine/Math.max(Math.abs(sine),c.LEAST_SPEED[0]),
+count2=whole*Math.min(together,1),[back=[],ahead=[]]=sides.map(side=>sideSteps(layers,side,spacing,count2,parting,u,c)),
+own=Math.max(kernelAt(1,0,parting,u,c),c.LEAST_WEIGHT[0]),steps=[...back.reverse(),{displacement:[0,0,0],lag:0,weight:own},
+...ahead],octaves=clamp(2*Math.log2(grain/Number(u.u_noiseFinest)),0,c.LAST_OCTAVE[0]),octave=Math.floor(octaves),late=octaves-
+octave,local=toFrame(geometry.frame,subtract2(at.position,geometry.center)),noise=noiseAround(local,octave,geometry.planar,
+areSparse,u,c),weights2=steps.map(({weight})=>weight),squares=total(weights2.map(weight=>weight**2)),pairs=weights2.slice(
+1).map((weight,n)=>weight*weights2[n]),near=total(pairs)/squares,apart=Number(u.u_spacing)*2**(late/2),shares2=[1-late,late],
+alone=Math.hypot(...shares2),variance=shares2.map((w,n)=>w**2*shared(apart*Math.SQRT1_2**n,near,c)),slow=u.u_fade?clamp(
+layers(2)[3]/Number(u.u_fade),0,1):1,gain=(moves?slow**2*(3-2*slow):0)*alone*total(weights2)/Math.sqrt(squares*total(variance)),
+moved=mover(at),lagUnit=layers(0)[3]*slices.lagUnit,samples=steps.map(({displacement,lag,weight})=>{let[fine,coarse]=noise(
+displacement),value=(shares2[0]*fine+shares2[1]*coarse)/alone,position=moved(displacement)??at.position,share=weight/total(
+weights2);return{position,lag:lag*lagUnit,weight:share,noise:value,grey:greyOf(value,1,c)}}),mean=total(samples.map(sample=>sample.
+weight*sample.noise));return{samples,middle:back.length,level:Math.log2(grain/Number(u.u_texel)),mean,gain,grey:greyOf(gain*
+mean,Number(settings.contrast),c)}}var TITLE2="Path through this point",FEWEST_DIGITS=4,MOST_DIGITS=14,VELOCITY_DIGITS=3,PATIENCE_MS=5e3,RETRY_MS=40,PLACES_IN_VIEW=200,
 DEGREE_M=111195,DOT_RADIUS=8;function vectorText(vector,size,digits,flat){return`(${vector.slice(0,flat?2:3).map(x=>{let value=Math.
 abs(x)<10**(-1-digits)*size?0:x;return digits>5?String(Number(value.toPrecision(digits))):numberText(value,digits)}).join(
 ", ")})`}var liesAcross=({planar,frame})=>planar&&Math.abs(frame[8])>.999;function placeText(position,header,parts,camera,isWithUnit=!1){
@@ -1710,14 +1770,14 @@ height??0)/PLACES_IN_VIEW/DEGREE_M);let text=positionText(position,header,camera
 lengthUnit):text}function positionText(position,header,camera){let{geometry}=header,zoom=Math.max(camera?.zoom??1,1),digits=Math.
 min(Math.ceil(FEWEST_DIGITS+Math.log10(zoom)),MOST_DIGITS),isInPlane=liesAcross(geometry)&&Math.abs(position[2]-geometry.
 center[2])<1e-12*geometry.extent;return vectorText(position,geometry.extent,digits,isInPlane)}var PointCard=class{element=dom(
-"div",{class:"card glass",role:"region",hidden:""});overlay=shape("svg",{});host;list=dom("dl");chosen=null;read=null;asked=0;later=null;hasNumbers=!0;drawn=null;constructor(host){
+"div",{class:"card glass",role:"region",hidden:""});overlay=shape("svg",{});host;list=dom("dl");chart=dom("div");chosen=null;read=null;asked=0;later=null;hasNumbers=!0;drawn=null;constructor(host){
 this.host=host,this.element.setAttribute("aria-label",TITLE2),this.overlay.setAttribute("class","path");let button=dom("\
 button",{type:"button",class:"link"},["Close"]);button.addEventListener("click",()=>this.close()),this.element.append(dom(
-"div",{class:"first"},[dom("span",{},[TITLE2]),button]),this.list)}choose(x,y,until=performance.now()+PATIENCE_MS){let{lifetime,
-canPick,options,together}=this.host;if(lifetime.cancel(this.later),!options.streamed&&!canPick&&performance.now()<until)
-return this.later=lifetime.later(()=>this.choose(x,y,until),RETRY_MS),null;this.close();for(let{card}of together)card!==
-this&&card.begin(x,y,!1);return this.begin(x,y,!0)?.point??null}begin(x,y,hasNumbers){let{options}=this.host;if(this.hasNumbers=
-hasNumbers,options.streamed)return this.ask({place:[x,y]}),null;let found=this.host.find(x,y);return found?(hasNumbers&&
+"div",{class:"first"},[dom("span",{},[TITLE2]),button]),this.list,this.chart)}choose(x,y,until=performance.now()+PATIENCE_MS){
+let{lifetime,canPick,options,together}=this.host;if(lifetime.cancel(this.later),!options.streamed&&!canPick&&performance.
+now()<until)return this.later=lifetime.later(()=>this.choose(x,y,until),RETRY_MS),null;this.close();for(let{card}of together)
+card!==this&&card.begin(x,y,!1);return this.begin(x,y,!0)?.point??null}begin(x,y,hasNumbers){let{options}=this.host;if(this.
+hasNumbers=hasNumbers,options.streamed)return this.ask({place:[x,y]}),null;let found=this.host.find(x,y);return found?(hasNumbers&&
 options.onPoint?.(found.point),options.reader?this.ask(found.point):(this.chosen=found,this.update()),found):null}async ask(at){
 let{options,header}=this.host,number=this.asked+=1,found=await options.reader?.(at,!0).catch(()=>null),{camera}=this.host;
 if(number!==this.asked||header!==this.host.header||!header||!camera)return;if(!found?.path)return this.hasNumbers?this.close():
@@ -1730,29 +1790,31 @@ this.read);let{options,camera,shown,header,tiles,settings,stage,requests}=this.h
 !header)return;let{point,layer,place}=chosen,scene=tiles?.layers.find(({key})=>String(key)===String(layer.key))?.scene,position=point.
 position,exact=requests.trajectory(position);if(!scene||scene.missing(shown[0],shown[1]).length){if(!exact)return;let now2={
 ...exact,sampled:[],directed:!0};return this.tell({...point,values:{}},now2,header,camera),this.show(now2,position,[])}let at={
-scene,moment:shown,place,position},path={...pathThrough(at,settings,camera,stage.clientHeight),...exact},places=this.host.
-parts.get("lonlat"),eastNorth2=velocityOnEarth(at,places)??void 0,speed=exact?void 0:speedAt(at,places),now={...point,values:valuesAt(
-scene,shown,place),eastNorth:eastNorth2,speed};this.report(now),this.tell(now,path,header,camera);let pixel={at,settings,
-camera,rows:stage.clientHeight},samples=options.explainer?.explain(pixel)??[];this.show(path,position,samples)}report(point){
-let{chosen}=this;!chosen||!this.hasNumbers||JSON.stringify(chosen.point.values)===JSON.stringify(point.values)||(this.chosen=
-{...chosen,point:{...chosen.point,values:point.values}},this.host.options.onPoint?.(this.chosen.point))}tell(point,{velocity},header,camera){
-let{unit:unit3}=header.speed,{eastNorth:eastNorth2,speed}=point,label=eastNorth2?"speed":header.speed.label,size=Math.hypot(
-...eastNorth2??velocity),speedShown=speed??size,lines=new Map,where=placeText(point.position,header,this.host.parts,camera,
-!0);if(eastNorth2){let[east,north]=eastNorth2;lines.set("place",where),lines.set("eastward",withUnit(numberText(east,VELOCITY_DIGITS),
-unit3)),lines.set("northward",withUnit(numberText(north,VELOCITY_DIGITS),unit3))}else{let text=vectorText(velocity,size,
-VELOCITY_DIGITS,liesAcross(header.geometry));lines.set("position",where),lines.set(label.replace("speed","velocity").replaceAll(
-"|",""),withUnit(text,unit3))}lines.set(label,withUnit(numberText(speedShown,VELOCITY_DIGITS),unit3));for(let[name,value]of Object.
+scene,moment:shown,place,position},pixel={at,settings,camera,rows:stage.clientHeight},summed=exact||options.explainer?void 0:
+pixelSum(pixel)?.samples,path={...pathThrough(at,settings,camera,stage.clientHeight),samples:summed,...exact},places=this.
+host.parts.get("lonlat"),eastNorth2=velocityOnEarth(at,places)??void 0,speed=exact?void 0:speedAt(at,places),now={...point,
+values:valuesAt(scene,shown,place),eastNorth:eastNorth2,speed};this.report(now),this.tell(now,path,header,camera);let samples=options.
+explainer?.explain(pixel)??[];this.show(path,position,samples)}report(point){let{chosen}=this;!chosen||!this.hasNumbers||
+JSON.stringify(chosen.point.values)===JSON.stringify(point.values)||(this.chosen={...chosen,point:{...chosen.point,values:point.
+values}},this.host.options.onPoint?.(this.chosen.point))}tell(point,path,header,camera){let{velocity,samples=[]}=path,{unit:unit3}=header.
+speed,{eastNorth:eastNorth2,speed}=point,label=eastNorth2?"speed":header.speed.label,size=Math.hypot(...eastNorth2??velocity),
+speedShown=speed??size,lines=new Map,where=placeText(point.position,header,this.host.parts,camera,!0);if(eastNorth2){let[
+east,north]=eastNorth2;lines.set("place",where),lines.set("eastward",withUnit(numberText(east,VELOCITY_DIGITS),unit3)),lines.
+set("northward",withUnit(numberText(north,VELOCITY_DIGITS),unit3))}else{let text=vectorText(velocity,size,VELOCITY_DIGITS,
+liesAcross(header.geometry));lines.set("position",where),lines.set(label.replace("speed","velocity").replaceAll("|",""),
+withUnit(text,unit3))}lines.set(label,withUnit(numberText(speedShown,VELOCITY_DIGITS),unit3));for(let[name,value]of Object.
 entries(point.values)){let named=header.scalars.choices.find(each=>each.name===name)??header.scalars;lines.set(named.label,
 withUnit(numberText(value),named.unit))}point.mark&&lines.set("critical point",point.mark),this.list.replaceChildren(...[
-...lines].flatMap(([word,value])=>[dom("dt",{},[word]),dom("dd",{},[value])])),this.element.hidden=!this.hasNumbers||this.
-host.options.explainer!==void 0}draw(){let{drawn}=this,{camera,stage}=this.host;if(!drawn||!camera)return;let{clientWidth:width,
-clientHeight:height}=stage,placeOf3=point2=>{let place=camera.project(point2);return place&&[(place[0]+1)/2*width,(1-place[1])/
-2*height]},linesOf2=points=>{let lines2=[[]];for(let place of points.map(placeOf3))place?lines2[lines2.length-1].push(place):
-lines2.push([]);return lines2.filter(line=>line.length>1)},{path,sampled,directed}=drawn.path,point=placeOf3(drawn.point),
-{samples}=drawn,most=Math.max(...samples.map(({weight})=>weight)),dots=samples.flatMap(({position,weight,grey})=>{let place=placeOf3(
-position);return place?[{place,radius:DOT_RADIUS*Math.sqrt(weight/most),grey}]:[]}),lines={path:linesOf2(path),sampled:dots.
-length?[]:linesOf2(sampled)},shapes=pathShapes({...lines,dots,point,directed});this.overlay.replaceChildren(...shapes.map(
-([tag,attributes])=>shape(tag,attributes)))}};var styles_default=`/* What is seen around the picture, in the shadow of each view. */
+...lines].flatMap(([word,value])=>[dom("dt",{},[word]),dom("dd",{},[value])]));let lagUnit=header.slices.byTime?header.slices.
+timeUnit:header.lengthUnit;this.chart.replaceChildren(...samples.length>1?[sampleChart(samples,lagUnit)]:[]),this.element.
+hidden=!this.hasNumbers||this.host.options.explainer!==void 0}draw(){let{drawn}=this,{camera,stage}=this.host;if(!drawn||
+!camera)return;let{clientWidth:width,clientHeight:height}=stage,placeOf3=point2=>{let place=camera.project(point2);return place&&
+[(place[0]+1)/2*width,(1-place[1])/2*height]},linesOf2=points=>{let lines2=[[]];for(let place of points.map(placeOf3))place?
+lines2[lines2.length-1].push(place):lines2.push([]);return lines2.filter(line=>line.length>1)},{path,sampled,directed}=drawn.
+path,point=placeOf3(drawn.point),{samples}=drawn,most=Math.max(...samples.map(({weight})=>weight)),dots=samples.flatMap(
+({position,weight,grey})=>{let place=placeOf3(position);return place?[{place,radius:DOT_RADIUS*Math.sqrt(weight/most),grey}]:
+[]}),lines={path:linesOf2(path),sampled:dots.length?[]:linesOf2(sampled)},shapes=pathShapes({...lines,dots,point,directed});
+this.overlay.replaceChildren(...shapes.map(([tag,attributes])=>shape(tag,attributes)))}};var styles_default=`/* What is seen around the picture, in the shadow of each view. */
 :host {
   --ink: var(--jp-ui-font-color1, #1b2430);
   --quiet: var(--jp-ui-font-color2, #566373);
@@ -1919,6 +1981,16 @@ dl {
 }
 dt { color: var(--quiet); }
 dd { margin: 0; text-align: right; white-space: nowrap; }
+.samples { margin: 6px 4px 0 0; font-size: 11px; }
+.samples .caption, .samples .ends { color: var(--quiet); }
+.samples ol {
+  display: flex; align-items: flex-end; height: 40px; margin: 3px 0 2px; padding: 0; list-style: none;
+  border-bottom: 1px solid var(--quiet); pointer-events: auto;
+}
+.samples li { display: flex; flex: 1 1 0; align-items: flex-end; min-width: 0; height: 100%; }
+.samples i { flex: 1; min-height: 1px; box-shadow: inset 0 0 0 0.5px var(--quiet); }
+.samples .ends { display: flex; justify-content: space-between; gap: 12px; white-space: nowrap; }
+.unseen { position: absolute; width: 1px; height: 1px; overflow: hidden; clip-path: inset(50%); white-space: nowrap; }
 .help {
   position: absolute; z-index: 2; inset: 10px; margin: auto; width: fit-content; height: fit-content; max-width: calc(10\
 0% - 20px);
@@ -2347,57 +2419,7 @@ follow(other=>other.followTime(time)),tell("onTime",time)},onClock:clock=>{follo
 Clock",clock)},onSetting:(name,value)=>{follow(other=>other.followSetting(name,value)),tell("onSetting",name,value)}}}};
 function define(){let name="flowtex-view";for(let n=2;customElements.get(name);n+=1)name=`flowtex-view-${n}`;customElements.
 define(name,FlowtexView)}define();function mountPage(element,scenes2,options={}){let view=new FlowtexView;return view.options=
-options,element.append(view),view.scenes=scenes2,view.first}function constantsOf(shader){let lines=shader.matchAll(/^const \w+ FLOWTEX_(\w+) =\s*(?:\w+\()?([^;]*?)\)?;/gm);return Object.
-fromEntries(Array.from(lines,([,name,values])=>[name,values.split(",").map(value=>Number(value.trim().replace(/u$/,"")))]))}
-function latticeOf(point,octave,u,c){let isOdd=(octave&1)===1,cells=2**(octave>>1),inverse2=(isOdd?Math.SQRT1_2:1)/cells/
-Number(u.u_noiseFinest),finest=isOdd?u.u_noiseOriginOdd:u.u_noiseOriginEven,past=isOdd?u.u_noiseRestOdd:[0,0,0],origin=finest.
-map(n=>Math.floor(n/cells)),rest=finest.map((n,axis)=>(n-origin[axis]*cells+past[axis])/cells),key=origin.map((n,axis)=>Math.
-imul(n,c.AXIS_PRIMES[axis])),salt=Math.imul(octave,c.OCTAVE_PRIME[0])+Math.imul(Number(u.u_seed),c.SEED_PRIME[0]);return key[0]+=
-salt,{here:add(rest,point,inverse2),inverse:inverse2,key,origin,salt}}function scatter(key,c){let whole=key>>>0;return Math.
-imul(whole^whole>>>c.HASH_SHIFT[0],c.HASH_FACTORS[0])}function sparseGrain(cell,{salt},c){let[all]=c.BLOCK_BITS,bits=Math.
-floor(all/cell.length),hash=0,place=salt>>>31<<all;cell.forEach((n,axis)=>{let block=n>>>bits,key=Math.imul(block,c.AXIS_PRIMES[axis])+
-(axis===0?salt:0);hash^=scatter(key,c),place|=(n&2**bits-1)<<bits*axis,place^=(block&1)<<all});let isBright=Math.imul(hash,
-c.HASH_FACTORS[1])>>>32-all===place;return c.MOST_GRAIN[0]*(isBright?c.SPARSE_HIGH[0]:-c.SPARSE_LOW[0])}function octaveAt(lattice,displacement,c,axes,isSparse2){
-let{here,inverse:inverse2,key,origin}=lattice,sides=add(here,displacement,inverse2).slice(0,axes).map((x,axis)=>{let low=Math.
-floor(x),hash=n=>scatter(key[axis]+Math.imul(n,c.AXIS_PRIMES[axis]),c);return{low,hashes:[hash(low),hash(low+1)],shares:[
-1-x+low,x-low]}}),sum=0;for(let corner=0;corner<2**axes;corner+=1){let side=axis=>corner>>axis&1,hash=sides.reduce((all,{
-hashes},axis)=>all^hashes[side(axis)],0),share=sides.reduce((all,{shares:shares2},axis)=>all*shares2[side(axis)],1),cell=sides.
-map(({low},axis)=>origin[axis]+low+side(axis)),grain=isSparse2?sparseGrain(cell,lattice,c):Math.imul(hash,c.HASH_FACTORS[1]);
-sum+=share*grain}let spread=(all,{shares:[a,b]})=>all*(1-2*a*b);return sum/Math.sqrt(sides.reduce(spread,1)*c.GRAIN_VARIANCE[0])}
-function noiseAround(local,octave,isPlanar,isSparse2,u,c){let point=add(local,scale2(u.u_noiseOrigin,-1)),[fine,coarse]=[
-0,1].map(n=>latticeOf(point,octave+n,u,c)),axes=isPlanar?2:3;return displacement=>[octaveAt(fine,displacement,c,axes,isSparse2),
-octaveAt(coarse,displacement,c,axes,isSparse2)]}function kernelAt(side,t,parting,u,c){return u.u_kernel===c.KERNEL_BOX[0]?
-1:u.u_kernel!==c.KERNEL_RAMP[0]?.5+.5*Math.cos(Math.PI*t):u.u_sides===1?1-t:(.5+.5*side*parting)*(1-side*t)}function sideSteps(layers,side,spacing,count2,parting,u,c){
-let lags=u.u_lags,slope=layer=>layers(layer).slice(0,3),by=layers(0)[3]*Number(u.u_unit),first=side*lags.length,end=Math.
-min(layers(first+1)[3],lags[lags.length-1]),sign=side?1:-1,[before,after]=[slope(0),slope(first+1)],[from,m]=[0,0],bendAt=()=>scale2(
-subtract2(after,before),1/(lags[m]-from)),stepAt=(along2,bend)=>{let least=Math.max(Math.sqrt(length2(bend)*spacing/by),
-c.LEAST_SPEED[0]);return spacing/by/Math.max(length2(along2),least)},[lag,step]=[0,stepAt(before,bendAt())],result2=[];for(let k=1;k<
-count2+1;k+=1){lag+=step;let alive=clamp((end-lag)/step+1,0,1)*Math.min(count2-k+1,1);if(!alive)break;for(;lag>lags[m]&&
-m<lags.length-1;m+=1)[before,from]=[after,lags[m]],after=slope(first+m+2);let bend=bendAt(),at=lateness=>before.map((x,n)=>x+
-bend[n]*lateness),weight=alive*kernelAt(sign,k/(count2+1),parting,u,c);result2.push({displacement:scale2(at(lag-from),lag*
-sign*by),weight}),step=stepAt(at(2*lag-from),bend)}return result2}function shared(apart,near,c){let total2=1;for(let m=1;m<=
-c.SHARED_TERMS[0];m+=1){let d=m*m*apart*apart;if(d>c.BELL_END[0])break;total2+=2*near**(m*m)*Math.exp(-d*(c.BELL[0]+c.BELL_BEND[0]*
-d))}return total2}var total=values=>values.reduce((sum,value)=>sum+value,0);function greyOf(value,contrast,c){return 1/(1+
-Math.exp(-c.TONE_SLOPE[0]*contrast*value))}function pixelSum({at,settings,camera,rows}){let{header}=at.scene,{geometry,slices,
-shaders}=header;if(header.image||isMoving(header,settings,!0))return null;let c=constantsOf(shaders.fragment),focus=camera.
-state.focal_point,view={...{eye:camera.eye,between:at.moment[2],time:slices.times[0],clock:0,still:!0},focus,anchor:[0,0,
-0],density:1,pixel:1},u=uniforms(header,settings,view),grain=grainAt(at,settings,camera,rows),spacing=Number(u.u_spacing)*
-grain,layers=layersAt(at),moves=length2(layers(0).slice(0,3))>c.LEAST_SPEED[0],sides=moves?[...Array(Number(u.u_sides)).
-keys()]:[],areSparse=isSparse(header,settings),set=Number(u.u_samples),whole=(u.u_sides===2?Math.floor(set/2):set-1)*stretchAt(
-at,settings,camera),sine=areSparse&&!isSignFree(header)?partingAt(at,.5*whole*spacing):0,cosine=Math.sqrt(Math.max(1-sine**
-2,0)),parting=clamp(2*sine,0,1),together=c.TOGETHER[0]*cosine/Math.max(Math.abs(sine),c.LEAST_SPEED[0]),count2=whole*Math.
-min(together,1),[back=[],ahead=[]]=sides.map(side=>sideSteps(layers,side,spacing,count2,parting,u,c)),own=Math.max(kernelAt(
-1,0,parting,u,c),c.LEAST_WEIGHT[0]),steps=[...back.reverse(),{displacement:[0,0,0],weight:own},...ahead],octaves=clamp(2*
-Math.log2(grain/Number(u.u_noiseFinest)),0,c.LAST_OCTAVE[0]),octave=Math.floor(octaves),late=octaves-octave,local=toFrame(
-geometry.frame,subtract2(at.position,geometry.center)),noise=noiseAround(local,octave,geometry.planar,areSparse,u,c),weights2=steps.
-map(({weight})=>weight),squares=total(weights2.map(weight=>weight**2)),pairs=weights2.slice(1).map((weight,n)=>weight*weights2[n]),
-near=total(pairs)/squares,apart=Number(u.u_spacing)*2**(late/2),shares2=[1-late,late],alone=Math.hypot(...shares2),variance=shares2.
-map((w,n)=>w**2*shared(apart*Math.SQRT1_2**n,near,c)),slow=u.u_fade?clamp(layers(2)[3]/Number(u.u_fade),0,1):1,gain=(moves?
-slow**2*(3-2*slow):0)*alone*total(weights2)/Math.sqrt(squares*total(variance)),moved=mover(at),samples=steps.map(({displacement,
-weight})=>{let[fine,coarse]=noise(displacement),value=(shares2[0]*fine+shares2[1]*coarse)/alone;return{position:moved(displacement)??
-at.position,weight:weight/total(weights2),noise:value,grey:greyOf(value,1,c)}}),mean=total(samples.map(sample=>sample.weight*
-sample.noise));return{samples,middle:back.length,level:Math.log2(grain/Number(u.u_texel)),mean,gain,grey:greyOf(gain*mean,
-Number(settings.contrast),c)}}var FIRST_POINT=[-.4,.5],ZOOM="zoom",SLIDERS=[["samples","Samples, K",1,49,2],["spacing","Spacing, Δt",.1,3,.1],["grain",
+options,element.append(view),view.scenes=scenes2,view.first}var FIRST_POINT=[-.4,.5],ZOOM="zoom",SLIDERS=[["samples","Samples, K",1,49,2],["spacing","Spacing, Δt",.1,3,.1],["grain",
 "Grain, pixels",2,24,1],["seed","Noise seed",0,20,1],[ZOOM,"Zoom",0,12,.25]],KERNELS={hann:"smooth",box:"even",ramp:"fal\
 ling"},ROW2=40;function row(name,count2,marks){let bars=marks.map(({at,y,height,fill,title})=>{let words=shape("title",{},
 [document.createTextNode(title)]);return shape("rect",{x:at+.04,y,width:.92,height:Math.max(height,.4),fill},[words])}),

@@ -424,6 +424,8 @@ class ClientData:
             "lags": plain_list(textures.lags),
             "sides": int(textures.sides),
             "unit": float(textures.unit),
+            "lagUnit": float(textures.unit / textures.pace),
+            "byTime": textures.store.parameter == "time",
             "pace": float(textures.typical_speed if self.steps > 1 else textures.pace),
             "cell": float(textures.cell),
             "critical": float(textures.critical_cell),

@@ -50,6 +50,14 @@ def test_a_path_can_be_sent() -> None:
     ends = [told["path"]["sampled"][n] for n in (0, -1)]
     assert ends == [pytest.approx(found.points[n]) for n in (0, -1)]
     assert told["path"]["directed"] is True
+    samples = told["path"]["samples"]
+    # The kernel is a Hann window over 21 samples at equal distances.
+    assert [sample["lag"] for sample in samples] == pytest.approx(found.lags)
+    assert np.diff([sample["lag"] for sample in samples]) == pytest.approx(-found.step, rel=0.01)
+    window = 0.5 + 0.5 * np.cos(np.pi * np.arange(-10, 11) / 11)
+    weights = [sample["weight"] for sample in samples]
+    assert weights == pytest.approx(window / window.sum(), rel=1e-3)
+    assert [sample["noise"] for sample in samples] == pytest.approx(found.noise)
 
 
 def read(app: FlowApp, **at: Any) -> Any:
