@@ -11,7 +11,7 @@ from typing import Any
 from trame.app import get_server
 from trame.ui.vuetify3 import VAppLayout
 
-from flowtex.app.controllers.appearance import BACKGROUNDS, Appearance
+from flowtex.app.controllers.appearance import ANOTHER_TIME, BACKGROUNDS, Appearance
 from flowtex.app.controllers.context import Context, Controller, State
 from flowtex.app.controllers.data import Data, FileBeside
 from flowtex.app.controllers.library import Choice, Library
@@ -42,6 +42,7 @@ THEMES = {
 }
 #: Words of the template that are the same on each page.
 WORDS = {
+    "ANOTHER_TIME": ANOTHER_TIME,
     "UPLOADS": ",".join(UPLOAD_SUFFIXES),
     "BACKGROUNDS": str(list(BACKGROUNDS)),
     "FORMATS": str(list(FORMATS)),

@@ -4,15 +4,14 @@ from __future__ import annotations
 
 from typing import Any
 
-import numpy as np
-
 from flowtex._util.colours import CMAPS
 from flowtex.app.controllers.context import Context, Controller, State
 from flowtex.app.controllers.data import FileBeside
-from flowtex.app.server.page import name_among
+from flowtex.app.server.page import name_among, number
 from flowtex.app.streaming.element import PAINTERS
 from flowtex.app.streaming.viewport import BACKGROUNDS as THEMES
 from flowtex.errors import FieldError
+from flowtex.field.dates import time_text
 from flowtex.scene.options import EARTH_LINES, SPEED
 from flowtex.scene.options import Appearance as Look
 from flowtex.settings import named_values
@@ -38,10 +37,9 @@ for _changes in (
     {"lines": "streamlines"},
 ):
     COMPARISONS[named_values(_changes)] = _changes
-#: Label of a second pane at another time, before it.
-TIME = "Time: "
-#: Most times that are offered, evenly spaced.
-MOST_TIMES = 100
+ANOTHER_TIME = "Another time"  #: Label of a second pane at another time.
+TIME = "Time: "  #: Word before the time of the second pane, in links.
+STOPS_PER_STEP = 8  #: Stops of the slider of that time between two time steps.
 #: Label of a second pane with another file, before its name.
 FILE = "File: "
 #: Label of a second pane with another scalar, before its name.
@@ -49,7 +47,10 @@ COLOUR_BY = "Colour by: "
 
 
 def comparison(name: str) -> dict[str, Any]:
-    """Return the differences of a second pane by its label; none for another file, opened first."""
+    """Return the differences of a second pane by its label, at another time with the time.
+
+    There are none for another file, which is opened first.
+    """
     if name.startswith(TIME):
         return {"time": float(name.removeprefix(TIME))}
     if name.startswith(COLOUR_BY):
@@ -84,12 +85,15 @@ class Appearance(Controller):
             theme=self.theme,
             background=self.background,
             compare=self.compared,
+            time_beside=0.0,
+            moment_beside="",
             painter="",
         )
         self.show_field()
         on = self.state.on
         on(self.take_background, "theme", "background")
         on(self.take_comparison, "compare")
+        on(self.take_time_beside, "time_beside")
         on(self.take_painter, "painter")
         context.field_changed.connect(self.show_field)
         self.area.painter_changed.connect(lambda: self.state.set(painter=self.area.painter))
@@ -100,7 +104,13 @@ class Appearance(Controller):
     def show_field(self) -> None:
         """Show the possible comparisons with the flow on the page."""
         comparisons = self._comparisons()
-        self.state.set(comparisons=comparisons)
+        times = self.viewport.field.times
+        stops = max((len(times) - 1) * STOPS_PER_STEP, 1)
+        first = float(times[0])
+        last = float(times[-1])
+        slider = {"time_first": first, "time_last": last, "time_stop": (last - first) / stops}
+        self.state.set(comparisons=comparisons, **slider)
+        self._show_time_beside()
         if self.compared not in comparisons:
             self.state.set(compare="nothing")
             self.take_comparison()
@@ -142,7 +152,7 @@ class Appearance(Controller):
             self.state.set(compare=self.compared)
         elif choice != self.compared:
             try:
-                self.area.compare(comparison(choice) or None)
+                self.area.compare(self._differences(choice) or None)
             except Exception:
                 self.state.set(compare=self.compared)
                 raise
@@ -150,10 +160,33 @@ class Appearance(Controller):
             self.beside.end()
             if choice.startswith(FILE):
                 self.beside.open(choice.removeprefix(FILE))
+            self._show_time_beside()
+
+    def _differences(self, choice: str) -> dict[str, Any]:
+        """Return the differences of a second pane; another time begins with the first one."""
+        if choice == ANOTHER_TIME:
+            return {"time": float(self.viewport.field.times[0])}
+        return comparison(choice)
+
+    def take_time_beside(self) -> None:
+        """Show the time that the page requests in the second pane."""
+        times = self.viewport.field.times
+        time = number(self.state.get("time_beside"), float(times[0]), float(times[-1]))
+        if self.compared == ANOTHER_TIME and time not in (None, self.viewport.time_beside):
+            self.viewport.time_beside = time
+            self.area.changed()
+        self._show_time_beside()
+
+    def _show_time_beside(self) -> None:
+        time = self.viewport.time_beside
+        self.state.set(time_beside=time, moment_beside=time_text(self.viewport.field, time))
 
     def describe(self) -> State:
         """Return settings, colours, background and comparison."""
         scene = self.area.scene
+        split = self.compared
+        if split == ANOTHER_TIME:
+            split = f"{TIME}{self.viewport.time_beside!r}"
         if self.area.clim is None and scene.has_own_range:
             clim = None
         else:
@@ -165,7 +198,7 @@ class Appearance(Controller):
             "clim": clim,
             "theme": self.theme,
             "background": self.background,
-            "split": self.compared,
+            "split": split,
         }
 
     def restore(self, saved: State) -> None:
@@ -178,13 +211,21 @@ class Appearance(Controller):
                 changed[k] = v
         self.settings.update(**changed)
         whole = {**self.first, **saved}
-        self.state.set(compare=whole["split"], theme=whole["theme"], background=whole["background"])
+        split = whole["split"]
+        wanted = split.removeprefix(TIME)
+        is_time = wanted != split
+        if is_time:
+            split = ANOTHER_TIME
+        self.state.set(compare=split, theme=whole["theme"], background=whole["background"])
         try:
             self.area.scene.appearance = self._look_of(saved)
         except FieldError as error:
             self.context.complain(error)
         self.take_background()
         self.take_comparison()
+        if is_time:
+            self.state.set(time_beside=float(wanted))
+            self.take_time_beside()
 
     def _look_of(self, saved: State) -> Look:
         """Return a saved appearance, completed by the first one as far as it fits the flow."""
@@ -207,14 +248,12 @@ class Appearance(Controller):
 
     def _comparisons(self) -> list[str]:
         """Return the names of all comparisons that the page offers for the present flow."""
-        times = self.viewport.field.times
-        steps = np.linspace(0, len(times) - 1, min(len(times), MOST_TIMES)).round().astype(int)
         names = []
         for name, changes in COMPARISONS.items():
             if "lines" not in changes or not self.viewport.field.steady:
                 names.append(name)
-        if len(times) > 1:
-            names += [f"{TIME}{time:.12g}" for time in times[steps]]
+        if not self.viewport.field.steady:
+            names.append(ANOTHER_TIME)
         names += [COLOUR_BY + name for name in self.area.scene.scalar_names]
         data = self.beside.data
         for name in data.names:

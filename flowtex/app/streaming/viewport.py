@@ -262,6 +262,11 @@ class Viewport:
         """Time of the second pane, which may be its own."""
         return _time_beside(self.scene, self.differences)
 
+    @time_beside.setter
+    def time_beside(self, time: float) -> None:
+        self.differences["time"] = time
+        self.set_time(self.handle.time)
+
     @property
     def time_shift(self) -> float | None:
         """Difference of the second pane's time; ``None`` if that is its own."""

@@ -8,6 +8,7 @@ pytest.importorskip("trame_rca")
 
 
 from flowtex.app import FlowApp
+from flowtex.field.dates import time_text
 
 pytestmark = pytest.mark.usefixtures("opengl")
 
@@ -24,12 +25,24 @@ def test_two_arrays_and_two_times_stand_beside_each_other(series: FlowApp, flat:
     flat.appearance.take_comparison()
     appearance, viewport = series.appearance, series.viewport
     now = viewport.handle.time
-    series.state.set(compare="Time: 2")
+    series.state.set(compare="Another time")
     appearance.take_comparison()
-    assert [pane.time for pane in viewport.panes] == [now, 2.0]
-    viewport.set_time(1.0)
-    assert [pane.time for pane in viewport.panes] == [1.0, 2.0]
-    assert appearance.describe()["split"] == "Time: 2"
+    assert [pane.time for pane in viewport.panes] == [now, 0.0]
+    series.state.set(time_beside=1.5)
+    appearance.take_time_beside()
+    viewport.set_time(2.0)
+    assert [pane.time for pane in viewport.panes] == [2.0, 1.5]
+    assert series.state.get("moment_beside") == time_text(viewport.field, 1.5)
+    saved = appearance.describe()
+    assert saved["split"] == "Time: 1.5"
+    for wrong in ("late", None, float("nan")):
+        series.state.set(time_beside=wrong)
+        appearance.take_time_beside()
+        assert series.state.get("time_beside") == 1.5
+    series.state.set(compare="nothing")
+    appearance.take_comparison()
+    appearance.restore(saved)
+    assert [pane.time for pane in viewport.panes] == [2.0, 1.5]
     series.state.set(compare="nothing")
     appearance.take_comparison()
     viewport.set_time(now)
