@@ -78,8 +78,8 @@ s,a}function fn(a,e){return a[0]*e[0]+a[1]*e[1]+a[2]*e[2]}function dn(a,e,t){var
 return a[0]=n*c-s*i,a[1]=s*o-r*c,a[2]=r*i-n*o,a}function bn(a,e,t){var r=e[0],n=e[1],s=e[2],o=t[3]*r+t[7]*n+t[11]*s+t[15];return o=o||1,a[0]=(t[0]*r+t[4]*n+t[8]*s+t[12])/
 o,a[1]=(t[1]*r+t[5]*n+t[9]*s+t[13])/o,a[2]=(t[2]*r+t[6]*n+t[10]*s+t[14])/o,a}function br(a,e,t){var r=e[0],n=e[1],s=e[2];
 return a[0]=r*t[0]+n*t[3]+s*t[6],a[1]=r*t[1]+n*t[4]+s*t[7],a[2]=r*t[2]+n*t[5]+s*t[8],a}var hl=(function(){var a=eo();return function(e,t,r,n,s,o){var i,c;for(t||(t=3),r||(r=0),n?c=Math.min(n*t+r,e.length):c=
-e.length,i=r;i<c;i+=t)a[0]=e[i],a[1]=e[i+1],a[2]=e[i+2],s(a,a,o),e[i]=a[0],e[i+1]=a[1],e[i+2]=a[2];return e}})();var W=a=>a,re=()=>[0,0,0],gn=a=>new Array(a).fill(0),T=(a,e)=>fn(W(a),W(e)),O=a=>ln(W(a)),E=(a,e)=>hn(re(),W(a),W(e)),k=(a,e)=>un(
-re(),W(a),e),N=(a,e)=>dn(re(),W(a),W(e)),C=a=>pn(re(),W(a)),A=(a,e,t=1)=>mn(re(),W(a),W(e),t);function rt(a,e,t){let r=cn(
+e.length,i=r;i<c;i+=t)a[0]=e[i],a[1]=e[i+1],a[2]=e[i+2],s(a,a,o),e[i]=a[0],e[i+1]=a[1],e[i+2]=a[2];return e}})();var W=a=>a,re=()=>[0,0,0],gn=a=>new Array(a).fill(0),A=(a,e)=>fn(W(a),W(e)),O=a=>ln(W(a)),E=(a,e)=>hn(re(),W(a),W(e)),k=(a,e)=>un(
+re(),W(a),e),N=(a,e)=>dn(re(),W(a),W(e)),C=a=>pn(re(),W(a)),T=(a,e,t=1)=>mn(re(),W(a),W(e),t);function rt(a,e,t){let r=cn(
 gn(16),t*Math.PI/180,W(e));return r===null?re():bn(re(),W(a),r)}function F(a,e){let t=on(gn(9),a);return br(re(),W(e),t)}
 function K(a,e){return br(re(),W(e),a)}function _(a,e,t){return Math.min(Math.max(a,e),t)}var ro="own cmap";var yn=256;function no({scalars:a},e,t,r){let{entries:n,flip:s,maps:o}=a,i=r?r.slice():new Uint8Array(4*n).fill(255),c=i.
 length/4-1||1;return i.map((l,h)=>{let[u,m]=[h>>2,h&3],p=Math.round((s?c-u:u)/c*(yn-1));return m===3?l:e[3*(o.indexOf(t)*
@@ -100,33 +100,33 @@ fe(r)}get distance(){return O(E(this.state.focal_point,this.state.position))}get
 let e=C(E(this.state.focal_point,this.state.position)),t=C(N(e,this.state.up));return[t,N(t,e),e]}sight(e){let{parallel:t,
 position:r,view_angle:n}=this.state;return t?{eye:null,halfHeight:this.height,pixels:e}:{eye:r,halfHeight:fe(n),pixels:e}}get planes(){
 let[e,t,r]=this.axes,{parallel:n,parallel_scale:s,view_angle:o}=this.state,{position:i,focal_point:c}=this.state,l=n?s:fe(
-o);return[e,k(e,-1),t,k(t,-1)].map((h,u)=>{let m=u<2?l*this.aspect:l;if(n)return[...h,m-T(h,c)];let p=A(h,r,m);return[...p,
--T(p,i)]})}get eye(){return this.state.parallel?[...k(this.axes[2],-1),0]:[...this.state.position,1]}at(e){let t=this.axes[2];
-if(this.state.parallel)return{height:this.height,ray:t};let r=E(e,this.state.position);return{height:T(r,t)*fe(this.state.
+o);return[e,k(e,-1),t,k(t,-1)].map((h,u)=>{let m=u<2?l*this.aspect:l;if(n)return[...h,m-A(h,c)];let p=T(h,r,m);return[...p,
+-A(p,i)]})}get eye(){return this.state.parallel?[...k(this.axes[2],-1),0]:[...this.state.position,1]}at(e){let t=this.axes[2];
+if(this.state.parallel)return{height:this.height,ray:t};let r=E(e,this.state.position);return{height:A(r,t)*fe(this.state.
 view_angle),ray:C(r)}}project(e){let[t,r]=this.axes,{height:n}=this.at(e);if(!(n>0))return null;let{parallel:s,position:o,
-focal_point:i}=this.state,c=E(e,s?i:o);return[T(t,c)/n/this.aspect,T(r,c)/n]}pan(e,t){let[r,n]=this.axes,{height:s}=this;
-this.shift(A(k(r,e*this.aspect*s),n,t*s))}rotate(e,t){if(this.globe)return this.roam(e,t);let{state:r,limits:n}=this,s=C(
+focal_point:i}=this.state,c=E(e,s?i:o);return[A(t,c)/n/this.aspect,A(r,c)/n]}pan(e,t){let[r,n]=this.axes,{height:s}=this;
+this.shift(T(k(r,e*this.aspect*s),n,t*s))}rotate(e,t){if(this.globe)return this.roam(e,t);let{state:r,limits:n}=this,s=C(
 r.up),o=E(r.position,r.focal_point);o=rt(o,s,-n.turn*e*Math.min(this.aspect,n.widest_turn));let i=C(N(s,o));o=rt(o,i,n.turn*
-t),r.position=A(r.focal_point,o),r.up=C(N(o,i))}roam(e,t){let{state:r,limits:n,globe:s}=this,o=O(r.position),i=Math.max(
+t),r.position=T(r.focal_point,o),r.up=C(N(o,i))}roam(e,t){let{state:r,limits:n,globe:s}=this,o=O(r.position),i=Math.max(
 o-s,0)*fe(r.view_angle),c=r.parallel?r.parallel_scale:i,l=Math.min(c/s*180/Math.PI,n.turn),h=Math.hypot(r.position[0],r.
 position[1])/o,u=Math.min(l*this.aspect/Math.max(h,so),n.turn);this.turn(gr,-u*e);let[m]=this.axes,p=Math.abs(r.position[2])/
-o,f=yr(r);this.turn(m,l*t),Math.abs(r.position[2])/o>Math.max(wn,p)&&(this.state=f);let[,,b]=this.axes,g=A(gr,b,-T(gr,b));
+o,f=yr(r);this.turn(m,l*t),Math.abs(r.position[2])/o>Math.max(wn,p)&&(this.state=f);let[,,b]=this.axes,g=T(gr,b,-A(gr,b));
 O(g)>1-wn&&(this.state.up=C(g))}turn(e,t){let{state:r}=this;for(let n of["position","focal_point","up"])r[n]=rt(r[n],e,t)}zoomBy(e,t=0,r=0){
 if(!Number.isFinite(e)||e<=0)return;this.flat||this.focusAt(t,r);let{farthest_zoom:n,deepest_zoom:s}=this.limits,o=_(e,n/
-this.zoom,s/this.zoom),[i,c,l]=this.axes,h=this.height*(1-1/o);this.shift(A(k(i,t*this.aspect*h),c,r*h)),this.state.parallel?
-this.state.parallel_scale/=o:this.approach(this.height/o,l)}ray(e,t){let[r,n,s]=this.axes,{height:o,state:i}=this,c=A(A(
-i.focal_point,r,e*this.aspect*o),n,t*o);return i.parallel?[A(c,s,-this.distance),s]:[A(i.position,[0,0,0]),C(E(c,i.position))]}approach(e,t){
-let r=Math.max(e/fe(this.limits.view_angle),this.nearest);this.state.position=A(this.state.focal_point,t,-r),this.state.
-view_angle=Math.atan(e/r)*360/Math.PI}focusAt(e,t){let r=this.pick?.(e,t);if(!r)return;let n=this.axes[2],s=T(E(r,this.state.
-position),n);s>0&&(this.state.focal_point=A(this.state.position,n,s))}shift(e){this.state.focal_point=A(this.state.focal_point,
-e),this.state.position=A(this.state.position,e)}};function yr(a){let{position:e,focal_point:t,up:r}=a;return{...a,position:[
+this.zoom,s/this.zoom),[i,c,l]=this.axes,h=this.height*(1-1/o);this.shift(T(k(i,t*this.aspect*h),c,r*h)),this.state.parallel?
+this.state.parallel_scale/=o:this.approach(this.height/o,l)}ray(e,t){let[r,n,s]=this.axes,{height:o,state:i}=this,c=T(T(
+i.focal_point,r,e*this.aspect*o),n,t*o);return i.parallel?[T(c,s,-this.distance),s]:[T(i.position,[0,0,0]),C(E(c,i.position))]}approach(e,t){
+let r=Math.max(e/fe(this.limits.view_angle),this.nearest);this.state.position=T(this.state.focal_point,t,-r),this.state.
+view_angle=Math.atan(e/r)*360/Math.PI}focusAt(e,t){let r=this.pick?.(e,t);if(!r)return;let n=this.axes[2],s=A(E(r,this.state.
+position),n);s>0&&(this.state.focal_point=T(this.state.position,n,s))}shift(e){this.state.focal_point=T(this.state.focal_point,
+e),this.state.position=T(this.state.position,e)}};function yr(a){let{position:e,focal_point:t,up:r}=a;return{...a,position:[
 ...e],focal_point:[...t],up:[...r]}}function G(a,e,t){let{state:r,aspect:n}=e,{center:s,extent:o,frame:i}=a,[c,l,h]=e.axes.map(S=>F(i,S)),u=S=>E(F(i,E(S,s)),
 t),m=u(r.focal_point),p=k(t,-1),f=Math.max(.51*o,a.reach??0),d=new Array(16).fill(0),b=r.parallel?r.parallel_scale:fe(r.
-view_angle);if([c.map(S=>S/b/n),l.map(S=>S/b)].forEach((S,R)=>{for(let L=0;L<3;L+=1)d[4*L+R]=S[L];d[12+R]=-T(S,m)}),r.parallel){
-for(let S=0;S<3;S+=1)d[4*S+2]=h[S]/f;return d[14]=-T(h,p)/f,d[15]=1,d}let y=u(r.position),x=T(E(p,y),h),v=Math.max(x+f,.001*
-f),w=Math.max(x-f,.001*v),M=(v+w)/(v-w),P=-2*v*w/(v-w);for(let S=0;S<3;S+=1)d[4*S+2]=h[S]*M,d[4*S+3]=h[S];return d[15]=-T(
+view_angle);if([c.map(S=>S/b/n),l.map(S=>S/b)].forEach((S,R)=>{for(let L=0;L<3;L+=1)d[4*L+R]=S[L];d[12+R]=-A(S,m)}),r.parallel){
+for(let S=0;S<3;S+=1)d[4*S+2]=h[S]/f;return d[14]=-A(h,p)/f,d[15]=1,d}let y=u(r.position),x=A(E(p,y),h),v=Math.max(x+f,.001*
+f),w=Math.max(x-f,.001*v),M=(v+w)/(v-w),P=-2*v*w/(v-w);for(let S=0;S<3;S+=1)d[4*S+2]=h[S]*M,d[4*S+3]=h[S];return d[15]=-A(
 h,y),d[14]=d[15]*M+P,d}function Mn({center:a,frame:e},t,r,n,s){let[o,i]=t.axes,{height:c,state:l,aspect:h}=t,[u,m]=[k(o,
-2*c*h/n),k(i,2*c/s)],p=A(A(E(l.focal_point,a),u,-n/2),m,-s/2);return{u_rayCorner:E(F(e,p),r),u_rayX:F(e,u),u_rayY:F(e,m)}}var oe=8,Sn=9,ao=.2,oo=1.4,En=55,io=125,co=.5,lo=4,An=4e-5,Tn=2e-6;function _n(a,e,t,r,n){let s=Math.max(n-e,Math.min(e/
+2*c*h/n),k(i,2*c/s)],p=T(T(E(l.focal_point,a),u,-n/2),m,-s/2);return{u_rayCorner:E(F(e,p),r),u_rayX:F(e,u),u_rayY:F(e,m)}}var oe=8,Sn=9,ao=.2,oo=1.4,En=55,io=125,co=.5,lo=4,Tn=4e-5,An=2e-6;function _n(a,e,t,r,n){let s=Math.max(n-e,Math.min(e/
 2,n),2)/a;if(t*(r+oe)<=s)return{scale:1,samples:r};let o=Math.min(Sn,r),i=Math.sqrt(s/(o+oe)/t);return i<1?{scale:Math.max(
 i,ao),samples:o}:{scale:1,samples:_(Math.floor(s/t-oe),o,r)}}function Pn(a,e,t,r,n){if(!n)return En;let s=Math.min(Sn,r),
 o=e+a*t*co**2*(s+oe);return _(o,En,io)}function Rn(a,e,t,r){return Math.max(Math.floor(a/(e*t*(r+oe))),lo)}function Ln(a){
@@ -145,7 +145,7 @@ this.entries.set(n,s=this.build(e,t,r)),!s.ready&&!s.error&&this.finish(s),s}bui
 o=n.counted(s.createProgram()),i=[s.VERTEX_SHADER,s.FRAGMENT_SHADER],c=ho+r.map(u=>`#define ${u}
 `).join(""),l=[e,t].map((u,m)=>{let p=n.counted(s.createShader(i[m]));return s.shaderSource(p,u.startsWith("#version")?u:
 c+u),s.compileShader(p),s.attachShader(o,p),p});return uo.forEach((u,m)=>s.bindAttribLocation(o,m,u)),s.linkProgram(o),{
-program:o,shaders:l,uniforms:new Map,...{ready:!1,error:"",warm:!1,price:An}}}finish(e){let t=this.graphics.context,{program:r}=e,
+program:o,shaders:l,uniforms:new Map,...{ready:!1,error:"",warm:!1,price:Tn}}}finish(e){let t=this.graphics.context,{program:r}=e,
 n=this.parallel?.COMPLETION_STATUS_KHR;if(n&&!t.getProgramParameter(r,n))return;if(!t.getProgramParameter(r,t.LINK_STATUS)){
 if(t.isContextLost())return;let i=[...e.shaders.map(c=>t.getShaderInfoLog(c)),t.getProgramInfoLog(r)].filter(Boolean).join(
 `
@@ -203,7 +203,7 @@ this.poles.length,1)]}get angles(){let{cells:e}=this,[t,r]=this.raysSize,n=new F
 (s,o)=>{let i=[];for(let c=0;c<=e;c+=1){let[l,h]=this.ray(o,c),u=Math.atan2(h,l);for(;u<i[c-1];)u+=2*Math.PI;i.push(u)}i.
 forEach((c,l)=>{let h=i[0]+2*Math.PI*l/e+1e-6,u=i.findLastIndex(m=>m<=h);n.set([c,Math.hypot(...this.ray(o,l)),u],4*(o*t+
 l))})}),n}get uniforms(){let e=this.poles.flatMap(({line:r,inward:n,near:s},o)=>[r,n,s,this.shift(o)]),t=this.poles.flatMap(
-({plane:r})=>r);for(;e.length<8;)e.push(0);for(;t.length<12;)t.push(0);return{u_poles:e,u_planes:t,u_polar:Number(this.isAlongJ)}}};var In=32767,[go,yo,xo,vo]=[0,1,2,3],wo=2,Mo=8,Eo=4,So=4,Ao=64,To=64,_o=2e4,Po=1e30,Cn=1e-5;function Un(a,e,t){let[r,n]=t,
+({plane:r})=>r);for(;e.length<8;)e.push(0);for(;t.length<12;)t.push(0);return{u_poles:e,u_planes:t,u_polar:Number(this.isAlongJ)}}};var In=32767,[go,yo,xo,vo]=[0,1,2,3],wo=2,Mo=8,Eo=4,So=4,To=64,Ao=64,_o=2e4,Po=1e30,Cn=1e-5;function Un(a,e,t){let[r,n]=t,
 s=a.shape[1],[o,i]=e.drawn,c=new Float64Array(r*n*3);for(let l=0,h=0;l<r;l+=1){let u=3*((l+o+1)*s+i+1);for(let m=0;m<3*n;m+=
 1)c[h++]=a.data[u+m]+e.middle[m%3]}return{data:c,shape:[r,n,3]}}function Vn(a,e,t){let[r,n]=t,s=3*a.shape[1],[o,i]=e.drawn,
 c=new Int16Array(r*n*3);for(let l=0,h=0;l<r;l+=1)for(let u=0;u<n;u+=1,h+=3){let m=s*(l+o+1)+3*(u+i+1),p=b=>[0,1,2].map(g=>a.
@@ -244,7 +244,7 @@ r?r[o]:1;for(let i of[0,1])s[4*o+1+i]=n?n[2*o+i]:0}return s}padded(){let e=this.
 3*4);for(let r=0;r<e.length/3;r+=1)for(let n=0;n<3;n+=1)t[4*r+n]=e[3*r+n];return t}flowTexture(e){let{width:t,height:r}=this.
 poles.size,n=this.graphics.context,o=this.flows.get(e)??this.texture(t,r,n.RGBA32F,this.flow(e));this.flows.delete(e),this.
 flows.set(e,o);for(let[i,c]of this.flows){if(this.flows.size<=So)break;this.flows.delete(i),this.textures.delete(c),this.
-graphics.free("Texture",c)}return o}partsOf({from:e,to:t}){let r=_(Math.ceil((t-e)*this.fastest/Ao),1,To),n=s=>s===r?t:e+
+graphics.free("Texture",c)}return o}partsOf({from:e,to:t}){let r=_(Math.ceil((t-e)*this.fastest/To),1,Ao),n=s=>s===r?t:e+
 (t-e)*s/r;return Array.from({length:r},(s,o)=>[n(o),n(o+1)])}*slices(e){let{graphics:t,trace:r,header:n}=this,s=t.context,
 {geometry:o,slices:i}=n,[c,l]=r.nodes,[h,u]=[o.rows.size,o.columns.size],m={width:u,height:h,layers:i.count,channels:4,levels:o.
 levels},p=s.createTexture();this.result=p,s.activeTexture(s.TEXTURE0),Qe(s,p,m);let{poles:f}=this,d=this.texture(f.size.
@@ -299,7 +299,7 @@ h)||h):e.period,m=(i?t.time-s[0]:t.clock)/u%n.mostTurns,p=u*(i?o:e.speed),f=m%n.
 let{noiseDoublings:r,clearDoublings:n}=a.constants,{frame:s,center:o}=a.geometry,i=F(s,E(e.focus,o)),c=2**(r-n)-1,l=2**n,
 h=i.map(p=>_(Math.round(p/t/l),-c,c)*l),u=h.map(p=>p/Math.SQRT2),m=u.map(p=>Math.floor(p/l)*l);return{u_noiseOrigin:h.map(
 (p,f)=>p*t-e.anchor[f]),u_noiseOriginEven:h,u_noiseOriginOdd:m,u_noiseRestOdd:u.map((p,f)=>p-m[f])}}function No(a,e,t){let{
-ends:r,geometry:n,constants:s}=a;if(!r)return{};let{frame:o,center:i}=n,c=F(o,[1,0,0]),[l,h]=r.map(b=>b-i[0]-T(c,e.anchor)),
+ends:r,geometry:n,constants:s}=a;if(!r)return{};let{frame:o,center:i}=n,c=F(o,[1,0,0]),[l,h]=r.map(b=>b-i[0]-A(c,e.anchor)),
 u=2**s.clearDoublings,m=k(c,(r[1]-r[0])/t),p=k(m,Math.SQRT1_2),f=b=>b.map(g=>Math.floor(g/u)*u),d=b=>b.map(g=>g-Math.floor(
 g/u)*u);return{u_ends:[c[0],c[1],l,h],u_turnEven:f(m),u_turnRestEven:d(m),u_turnOdd:f(p),u_turnRestOdd:d(p)}}function Io({
 size:a,stepSize:e,repeat:t},r,n){return{u_stepSize:e.map(s=>s*n),u_imageSize:a.map(s=>s*n*r),u_imageRound:[Number(t[1]),
@@ -323,20 +323,20 @@ tileBlocks:o}=this.header,i=s[t-1].map(u=>Math.ceil(u/o)),[c,l]=e===B?[[0,0],i]:
 tileBlocks:n}=this.header,s=n/2,[,o,i]=r===B?[0,0,0]:ce(r);return[s*e-n*o,s*t-n*i,s]}choose(e){let t=new Map,{depth:r,finest:n}=this.
 header,s=[B];for(let o of s){let i=o===B?[r,0,0]:ce(o),c={key:i,needed:!1,pixels:0,finer:[]},[l,h,u,m]=this.blocksOf(o,i),
 p=this.header.blocks[i[0]][1],f=new Set;for(let d=l;d<u;d+=1)for(let b=h;b<m;b+=1){let g=this.place(i[0],d,b);if(!Sr(e,g)||
-e.shownOn?.sees(g)===!1)continue;let y=Ar(e,g)*(e.shownOn?.scale(g)??1);i[0]>n&&y>e.cellPixels?f.add(d*p+b):c.needed=!0,
+e.shownOn?.sees(g)===!1)continue;let y=Tr(e,g)*(e.shownOn?.scale(g)??1);i[0]>n&&y>e.cellPixels?f.add(d*p+b):c.needed=!0,
 f.has(d*p+b)||(c.pixels=Math.max(c.pixels,y))}f.size&&(c.finer=this.children(o,i).filter(d=>{let[b,g,y]=this.finerPart(d,
 B);return[...f].some(x=>{let[v,w]=[Math.floor(x/p)-b,x%p-g];return v>=0&&v<y&&w>=0&&w<y})}).map(z)),t.set(o,c),s.push(...c.
-finer)}return t}};function Sr({planes:a},[e,t,r,n]){return a.every(s=>T(s,[e,t,r])+s[3]>=-n*O(s.slice(0,3)))}function Ar({
+finer)}return t}};function Sr({planes:a},[e,t,r,n]){return a.every(s=>A(s,[e,t,r])+s[3]>=-n*O(s.slice(0,3)))}function Tr({
 eye:a,halfHeight:e,pixels:t},[r,n,s,o,i]){let c=a?Math.max(O(E([r,n,s],a))-o,i):1;return i*.5*t/(e*c)}function Wn(a){return[
-...a].filter(([t,{needed:r}])=>t!==B&&r).sort(([,t],[,r])=>r.pixels-t.pixels).map(([t])=>t)}function Tr(a,e){let t=new Map,
+...a].filter(([t,{needed:r}])=>t!==B&&r).sort(([,t],[,r])=>r.pixels-t.pixels).map(([t])=>t)}function Ar(a,e){let t=new Map,
 r=s=>{t.delete(s),a.get(s)?.finer.forEach(r)},n=s=>{let{needed:o=!1,finer:i=[]}=a.get(s)??{},c=i.filter(n);return s!==B&&
 !o&&c.length===i.length?!0:s!==B&&!e(s)?(c.forEach(r),!1):(t.set(s,c),!0)};return n(B),t}function pt(a,e,t){let r=s=>Math.
 min(s*2**e,t-1),n=Math.floor(a);return r(n)+(a-n)*(r(n+1)-r(n))}function $n(a,e,t){let r=2**e,n=Math.max(Math.min(Math.floor(
 a/r),Math.ceil((t-1)/r)-1),0);return n+(a-n*r)/(Math.min((n+1)*r,t-1)-n*r)}var jn=1e4,Bo=20,Ho=4,Go=4,zo="The surface is shown coarse",Wo="A part of the surface is shown coarse",$o="A time step c\
-annot be shown",Ae=class{times=new Map;now;constructor(e=()=>performance.now()){this.now=e}add(e){this.times.set(e,this.
-now())}has(e){return this.now()-(this.times.get(e)??-1/0)<jn}},ke=class{source;taker;running=new Map;jobs=[];failed=new Ae;constructor(e,t){
+annot be shown",Te=class{times=new Map;now;constructor(e=()=>performance.now()){this.now=e}add(e){this.times.set(e,this.
+now())}has(e){return this.now()-(this.times.get(e)??-1/0)<jn}},ke=class{source;taker;running=new Map;jobs=[];failed=new Te;constructor(e,t){
 this.source=e,this.taker=t}want(e){this.jobs=e;let t=new Set(e.map(String));for(let[r,n]of this.running)t.has(r)||(this.
-running.delete(r),n.abort());this.next()}stop(){this.want([]),this.failed=new Ae}next(){for(let e of this.jobs){if(this.
+running.delete(r),n.abort());this.next()}stop(){this.want([]),this.failed=new Te}next(){for(let e of this.jobs){if(this.
 running.size>=(this.source()?.atOnce??Ho))return;!this.running.has(String(e))&&!this.failed.has(String(e))&&this.run(e)}}async run(e){
 let{taker:t}=this,r=this.source();if(!r)return;let[n,s,o]=e,i=new AbortController,{signal:c}=i,l=h=>n?t.tiles?.has(z(n),
 h)??!1:t.parts.has(h);this.running.set(String(e),i);try{let h=await r.load(n,s,c,l,o);if(!c.aborted)for(let u of h)t.setPart(
@@ -377,28 +377,28 @@ u*m].map((p,f)=>{let d=_(l+(f&1),0,s.size-1);return[_(h+(f>>1),0,n.size-1)*s.siz
 moment:r}=a,{slices:n}=t.header,s=ri(a,e),[o,i,c]=r,l=s.map(([p])=>p),h=(o===i?[o]:[o,i]).map(p=>t.texels(p,l)),u=o===i?
 [1]:[1-c,c],m=me(t.header)?ni(s.map((p,f)=>h[0](0,f))):s.map(()=>1);return p=>{let f=[0,0,0,0];return s.forEach(([,d],b)=>{
 let g=p+(p>n.lags.length?-1:1)*n.lags.length,y=m[b]<0&&p>0?g:p;h.forEach((x,v)=>{u[v]&&x(y,b).forEach((w,M)=>{let P=p===
-ls&&M===3?Math.max(w,0):w;f[M]+=d*u[v]*P*(M<3?m[b]:1)})})}),f}}function ni(a){let e=[0,0,0];return a.map(([t,r,n])=>{let s=T(
-e,[t,r,n])<0?-1:1;return e=A(e,[t,r,n],s),s})}function si(a,e,t,r,n){let[s,o]=[a(0).slice(0,3),0],i=a(t+1)[3],c=Math.min(
+ls&&M===3?Math.max(w,0):w;f[M]+=d*u[v]*P*(M<3?m[b]:1)})})}),f}}function ni(a){let e=[0,0,0];return a.map(([t,r,n])=>{let s=A(
+e,[t,r,n])<0?-1:1;return e=T(e,[t,r,n],s),s})}function si(a,e,t,r,n){let[s,o]=[a(0).slice(0,3),0],i=a(t+1)[3],c=Math.min(
 i,e[e.length-1]),l=[];for(let h=0;h<e.length&&o<c;h+=1){let u=a(t+h+1).slice(0,3);for(let m=1;m<=as;m+=1){let p=m/as,f=Math.
 min(o+p*(e[h]-o),c),d=(f-o)/(e[h]-o),b=s.map((g,y)=>g+d*(u[y]-g));if(l.push(k(b,r*f*n)),f===c)break}[s,o]=[u,e[h]]}return l}
-function ms({scene:a,place:e,position:t}){let{image:r,geometry:n}=a.header;if(!r)return l=>A(t,K(n.frame,l));let{alongI:s,
+function ms({scene:a,place:e,position:t}){let{image:r,geometry:n}=a.header;if(!r)return l=>T(t,K(n.frame,l));let{alongI:s,
 alongJ:o}=r,i=[is(s,e[0]),is(o,e[1])],c=Fe(a,e);return([l,h])=>{let u=[cs(s,i[0]+l),cs(o,i[1]+h)];return u.some(Number.isNaN)?
-null:A(t,E(Fe(a,u),c))}}function Ne(a,e){return A(Fe(a,e),a.header.geometry.center)}function Fe(a,e){let{data:t}=a.part(
+null:T(t,E(Fe(a,u),c))}}function Ne(a,e){return T(Fe(a,e),a.header.geometry.center)}function Fe(a,e){let{data:t}=a.part(
 "position"),r=a.cornersAt(e),n=[0,1,2].map(s=>gt(r,o=>t[3*o+s]));return K(a.header.geometry.frame,n)}function ps(a,e){let{
 shape:t,triangles:r}=a.header.geometry;if(r){let i=(c,l)=>Fe(a,Oe(Math.floor(e[1]),c,l));return[E(i(1,0),i(0,0)),E(i(0,1),
 i(0,0))]}let[n,s]=e.map((i,c)=>_(i,.5,t[1-c]-1.5)),o=(i,c)=>Fe(a,[n+i,s+c]);return[E(o(.5,0),o(-.5,0)),E(o(0,.5),o(0,-.5))]}function is(a,e){let t=Math.min(Math.floor(e),a.length-2);return a[t]+(e-t)*(a[t+1]-a[t])}function cs(a,e){let t=a.findIndex(
 r=>r>=e);return t<0||e<a[0]?NaN:t===0?0:t-1+(e-a[t-1])/(a[t]-a[t-1])}function ai(a,e,t,r){let{scene:n,place:s,position:o}=a,
-{geometry:i,image:c}=n.header,{height:l,ray:h}=t.at(o),u=2*l/r;if(c){let f=N(...ps(n,s)),d=Math.max(Math.abs(T(C(f),h)),
+{geometry:i,image:c}=n.header,{height:l,ray:h}=t.at(o),u=2*l/r;if(c){let f=N(...ps(n,s)),d=Math.max(Math.abs(A(C(f),h)),
 hs),[b,g]=[c.alongI,c.alongJ].map((x,v)=>{let w=Math.min(Math.floor(s[v]),x.length-2);return(x[w+1]-x[w])*c.stepSize[v]}),
 y=Math.sqrt(O(f)/(b*g));return e.lod?Math.max(u/Math.sqrt(d),y):y}let m=i.extent/Number(e.resolution);if(!e.lod)return m;
 let p=u*fs(a,t).side*Number(e.grain);return e.fixed_grain?Math.max(p,m):p}function oi(a,e,t){if(a.scene.header.image||!e.
 lod||e.fixed_grain)return 1;let{side:r,across:n,area:s}=fs(a,t);if(!n)return 1;let o=_(s/(n*r),1/os,os);return Math.abs(
 o-1)<ei?1:o}function fs(a,e){let{geometry:t}=a.scene.header,r=C(N(...ps(a.scene,a.place))),n=C(N(r,K(t.frame,Pr(a)(0).slice(
-0,3)))),{ray:s}=e.at(a.position),o=T(r,s),i=(o<0?-1:1)*Math.max(Math.abs(o),hs),[c,l]=e.axes.slice(0,2).map(d=>A(d,s,-T(
-r,d)/i)),h=O(N(c,l)),u=.5*(T(c,c)+T(l,l)),m=Math.sqrt(u+Math.sqrt(Math.max(u**2-h**2,0))),p=Math.sqrt(m*Math.max(h/m,Zo*
-m)),f=Math.hypot(T(c,n),T(l,n));return{side:Math.max(p,Qo*f),across:f,area:h}}function ii(a,e,t){let r=[],[n,s]=[a,t];for(let o of e){
-let i=O(E(o,n));if(i>=s){s>0&&r.push(A(n,E(o,n),s/(i||1)));break}r.push(o),s-=i,n=o}return r}function ds([a,e,t]){return a===
-e?[[[a,a,0],1]]:[[[a,a,0],1-t],[[e,e,0],t]]}function Rr(a){let e=[0,0,0];for(let[t,r]of ds(a.moment))r&&(e=A(e,ci({...a,
+0,3)))),{ray:s}=e.at(a.position),o=A(r,s),i=(o<0?-1:1)*Math.max(Math.abs(o),hs),[c,l]=e.axes.slice(0,2).map(d=>T(d,s,-A(
+r,d)/i)),h=O(N(c,l)),u=.5*(A(c,c)+A(l,l)),m=Math.sqrt(u+Math.sqrt(Math.max(u**2-h**2,0))),p=Math.sqrt(m*Math.max(h/m,Zo*
+m)),f=Math.hypot(A(c,n),A(l,n));return{side:Math.max(p,Qo*f),across:f,area:h}}function ii(a,e,t){let r=[],[n,s]=[a,t];for(let o of e){
+let i=O(E(o,n));if(i>=s){s>0&&r.push(T(n,E(o,n),s/(i||1)));break}r.push(o),s-=i,n=o}return r}function ds([a,e,t]){return a===
+e?[[[a,a,0],1]]:[[[a,a,0],1-t],[[e,e,0],t]]}function Rr(a){let e=[0,0,0];for(let[t,r]of ds(a.moment))r&&(e=T(e,ci({...a,
 moment:t}),r));return e}function ci(a){let{scene:e,position:t}=a,{slices:r,image:n,speed:s}=e.header,o=Pr(a),[i,c,l]=o(0),
 h=[i,c,l],u=k(h,ti*(n?1/n.stepSize[0]:r.cell)/(O(h)||1)),m=O(h)>us?E(ms(a)(u)??t,t):h;return k(C(m),o(ls)[3]*s.typical)}
 function bs(a,e,t,r){let{scene:n,position:s}=a,{slices:o,image:i}=n.header,c=Pr(a),l=!me(n.header),h=c(0),u=[h[0],h[1],h[2]],
@@ -423,9 +423,9 @@ d:bi(e.header,o,d);return{point:{position:p,index:b,values:gi(o.scene,r,d)},laye
 shape:t},r,n){let s=(o,{size:i,before:c},l)=>_(o*i-.5-c,0,l-1);return[s(r,e,t[1]),s(n,a,t[0])]}function bi(a,{key:e},[t,
 r]){let{pyramid:n,geometry:s,mesh:o,formula:i}=a,[c,l,h]=e,[u,m]=n?.shapes[0]??s.shape,p=o.tileCells*(n?.tileBlocks??0),
 f=i?2**(n?.depth??0):1,d=(b,g,y)=>pt(b+g*p,c,y)/f;return[d(t,h,m),d(r,l,u)]}function Ms(a,e,[t,r]){let{geometry:n}=a.header,
-{data:s}=a.part("position"),o=a.cornersAt(e).map(([v])=>v),[i,c,l]=o.map(v=>A(K(n.frame,[...s.subarray(3*v,3*v+3)]),n.center)),
-[h,u]=[E(c,i),E(l,i)],m=N(h,u),p=A(t,r,T(m,E(i,t))/T(m,r)),f=E(p,i),[d,b]=[N(f,u),N(h,f)].map(v=>T(v,m)/T(m,m));if(!(Math.
-max(Math.abs(d),Math.abs(b))<fi)){let v=Ne(a,e);return[A(t,r,T(E(v,t),r)/T(r,r)),e]}if(n.triangles)return[p,Oe(Math.floor(
+{data:s}=a.part("position"),o=a.cornersAt(e).map(([v])=>v),[i,c,l]=o.map(v=>T(K(n.frame,[...s.subarray(3*v,3*v+3)]),n.center)),
+[h,u]=[E(c,i),E(l,i)],m=N(h,u),p=T(t,r,A(m,E(i,t))/A(m,r)),f=E(p,i),[d,b]=[N(f,u),N(h,f)].map(v=>A(v,m)/A(m,m));if(!(Math.
+max(Math.abs(d),Math.abs(b))<fi)){let v=Ne(a,e);return[T(t,r,A(E(v,t),r)/A(r,r)),e]}if(n.triangles)return[p,Oe(Math.floor(
 e[1]),d,Math.max(b,0))];let[g,y]=n.shape,x=(v,w)=>{let[M,P,S]=o.map(v);return _(M+d*(P-M)+b*(S-M),0,w-1)};return[p,[x(v=>v%
 y,y),x(v=>Math.floor(v/y),g)]]}function gi(a,e,t){let{header:r,parts:n}=a,{scalars:s,geometry:o}=r,i=vs(a,t),c=o.triangles?
 Math.floor(t[1]):i[0][0],[l,h,u]=e,m={},p=s.choices.map((f,d)=>({...f,number:d}));for(let f of[s,...p]){let d=a.scalarParts(
@@ -445,15 +445,15 @@ if(this.columns>=e&&this.rows>=t)return;let[r,n]=[Math.max(e,this.columns),Math.
 o=s.context;this.targets=[0,1].map(()=>{let i=s.counted(o.createTexture());o.bindTexture(o.TEXTURE_2D,i),o.texStorage2D(
 o.TEXTURE_2D,1,o.R16F,r,n),o.texParameteri(o.TEXTURE_2D,o.TEXTURE_MIN_FILTER,o.NEAREST),o.texParameteri(o.TEXTURE_2D,o.TEXTURE_MAG_FILTER,
 o.NEAREST);let c=s.counted(o.createFramebuffer());return o.bindFramebuffer(o.FRAMEBUFFER,c),o.framebufferTexture2D(o.FRAMEBUFFER,
-o.COLOR_ATTACHMENT0,o.TEXTURE_2D,i,0),{frame:c,texture:i}}),[this.columns,this.rows]=[r,n]}};var yi=3,As=5;function Ts({shape:a,triangles:e},t,r,n){let[s,o]=t.shape,i=new Int8Array(s*o).fill(e?0:Math.log2(n));for(let c=0;c<
+o.COLOR_ATTACHMENT0,o.TEXTURE_2D,i,0),{frame:c,texture:i}}),[this.columns,this.rows]=[r,n]}};var yi=3,Ts=5;function As({shape:a,triangles:e},t,r,n){let[s,o]=t.shape,i=new Int8Array(s*o).fill(e?0:Math.log2(n));for(let c=0;c<
 r.length;c+=3){if(Number.isFinite(r[c]))continue;let[l,h]=[Math.floor(c/3/a[1]),c/3%a[1]];for(let u of[Math.floor((l-1)/
 n),Math.floor(l/n)])for(let m of[Math.floor((h-1)/n),Math.floor(h/n)])u>=0&&u<s&&m>=0&&m<o&&(i[u*o+m]=0)}return i}function _s({
 shape:a,data:e},t,r,n,s){let[o,i]=a,c={...t.sight(r),planes:t.planes},l=new Int8Array(o*i).fill(-1),h=[1,1,-1,-1];for(let u=0;u<
-l.length;u+=1){let[m,p]=[Math.floor(u/i),u%i],f=e.subarray(As*u,As*(u+1));if(n.some(([g,y,x])=>m>=g&&m<g+x&&p>=y&&p<y+x)||
-!Sr(c,f))continue;let b=Math.floor(Math.log2(yi/Ar(c,f)));l[u]=Math.min(Math.max(b,0),s[u]),xi(t,f).forEach((g,y)=>h[y]=
+l.length;u+=1){let[m,p]=[Math.floor(u/i),u%i],f=e.subarray(Ts*u,Ts*(u+1));if(n.some(([g,y,x])=>m>=g&&m<g+x&&p>=y&&p<y+x)||
+!Sr(c,f))continue;let b=Math.floor(Math.log2(yi/Tr(c,f)));l[u]=Math.min(Math.max(b,0),s[u]),xi(t,f).forEach((g,y)=>h[y]=
 y<2?Math.min(h[y],g):Math.max(h[y],g))}return{levels:l,box:h}}function xi(a,[e,t,r,n]){let[s,o,i]=a.axes,{parallel:c,position:l,
-focal_point:h}=a.state,u=E([e,t,r],c?h:l),m=[-n,n].map(d=>a.at(A([e,t,r],i,d)).height);if(!(m[0]>0))return[-1,-1,1,1];let[
-p,f]=[-n,n].map(d=>[T(u,s)/a.aspect,T(u,o)].map((b,g)=>m.map(y=>(b+d/(g?1:a.aspect))/y)));return[...p.map(d=>Math.min(...d)),
+focal_point:h}=a.state,u=E([e,t,r],c?h:l),m=[-n,n].map(d=>a.at(T([e,t,r],i,d)).height);if(!(m[0]>0))return[-1,-1,1,1];let[
+p,f]=[-n,n].map(d=>[A(u,s)/a.aspect,A(u,o)].map((b,g)=>m.map(y=>(b+d/(g?1:a.aspect))/y)));return[...p.map(d=>Math.min(...d)),
 ...f.map(d=>Math.max(...d))]}var vi=1024,Ps=["u_places","u_depths","u_colours","u_strides","u_below","u_texture"].map(a=>Q.indexOf(a)),wt=class{width=0;height=0;graphics;means;target=null;key="";layers=[];seen=[];squares=0;constructor(e){
 this.graphics=e,this.means=new vt(e)}draw({layers:e,camera:t,anchor:r,width:n,height:s}){let o=e.map(({scene:p,covered:f})=>[
 p.number,p.version,f]),i=JSON.stringify([o,t.state,t.aspect,r,n,s]);if(i===this.key)return;Object.assign(this,{key:i,layers:e,
@@ -508,11 +508,11 @@ key=o,this.target={frames:b,textures:c,...i}}bind(){let e=this.graphics.context;
 t),e.bindTexture(e.TEXTURE_2D,this.target?.textures[r]??null)}),e.activeTexture(e.TEXTURE0+Q.length)}};function Rs(a,e){var t=e[0],r=e[1],n=e[2],s=e[3],o=e[4],i=e[5],c=t*s-r*n;return c?(c=1/c,a[0]=s*c,a[1]=-r*c,a[2]=-n*c,a[3]=
 t*c,a[4]=(n*i-s*o)*c,a[5]=(r*o-t*i)*c,a):null}function Ls(a){return a[0]*a[3]-a[1]*a[2]}function ks(a,e,t){var r=e[0],n=e[1],
 s=e[2],o=e[3],i=e[4],c=e[5],l=t[0],h=t[1],u=t[2],m=t[3],p=t[4],f=t[5];return a[0]=r*l+s*h,a[1]=n*l+o*h,a[2]=r*u+s*m,a[3]=
-n*u+o*m,a[4]=r*p+s*f+i,a[5]=n*p+o*f+c,a}var Mi=14,Ei=40,Si=256;function Os(a,e){a?.clearRect(0,0,e.width,e.height),a?.drawImage(e,0,0)}var Ai=(a,e)=>a.getContext(
+n*u+o*m,a[4]=r*p+s*f+i,a[5]=n*p+o*f+c,a}var Mi=14,Ei=40,Si=256;function Os(a,e){a?.clearRect(0,0,e.width,e.height),a?.drawImage(e,0,0)}var Ti=(a,e)=>a.getContext(
 "2d",{alpha:e}),Mt=class{viewer;content;graphics;canvas;pen;last=document.createElement("canvas");lastPen;lastCamera=null;coarse=document.
 createElement("canvas");coarsePen;front=document.createElement("canvas");frontPen=this.front.getContext("2d");frontLook="";version=1;draftVersion=0;rowsDone=0;layers=[];isRefined=!1;fixed=4;isCoarse=!1;constructor(e,t){
 this.viewer=e,this.content=t,this.graphics=e.graphics,this.canvas=e.canvas;let{canvas:r,last:n,coarse:s}=this,o=[r,n,s].
-map(i=>Ai(i,e.isClear??!1));[this.pen,this.lastPen,this.coarsePen]=o}restart(e=!1){e||(this.lastCamera=null),this.version+=
+map(i=>Ti(i,e.isClear??!1));[this.pen,this.lastPen,this.coarsePen]=o}restart(e=!1){e||(this.lastCamera=null),this.version+=
 1,this.rowsDone=0}refine(){(this.rowsDone>=this.canvas.height||!this.content.isComing)&&(this.rowsDone=0),this.isRefined=
 !0}resize(e,t){let{canvas:r,coarse:n,last:s}=this;n.width=r.width,n.height=r.height,this.coarsePen?.drawImage(r,0,0),r.width=
 s.width=e,r.height=s.height=t,n.width>1&&this.pen?.drawImage(n,0,0,e,t)}dispose(){for(let e of[this.last,this.coarse,this.
@@ -570,24 +570,24 @@ l.before],u_colour:e.colour,u_lit:e.lighting,u_ground:e.background??[1,1,1],u_op
 e.geometry.frame,k(r.axes[2],-1))}}copy(e,t,r,n){let{pen:s}=this;if(!s)return;let{canvas:o}=this.graphics,i=o.height-n,[
 c,l]=[this.canvas.width,this.canvas.height/t];if(s.imageSmoothingEnabled=c!==e||l!==1,s.imageSmoothingEnabled){let{coarse:u,
 coarsePen:m}=this;u.width=e,u.height=n,m?.drawImage(o,0,i,e,n,0,0,e,n),[o,i]=[u,0]}let h=(t-r-n)*l;s.clearRect(0,h,c,n*l),
-s.drawImage(o,0,i,e,n,0,h,c,n*l)}},Ti=4,_i=.3,kr=1e-6,Fs=(a,e)=>ks([0,0,0,0,0,0],a,e),Ns=a=>Rs([0,0,0,0,0,0],a);function Pi(a,e,t,r){
+s.drawImage(o,0,i,e,n,0,h,c,n*l)}},Ai=4,_i=.3,kr=1e-6,Fs=(a,e)=>ks([0,0,0,0,0,0],a,e),Ns=a=>Rs([0,0,0,0,0,0],a);function Pi(a,e,t,r){
 let[n,s]=[t/2,r/2],o=M=>Fs([n,0,0,-s,n,s],[M[0],M[1],M[4],M[5],M[12],M[13]]),i=Fs(o(e),Ns(o(a))),c=Math.abs(Ls(i));if(!(c>
-_i**2&&c<Ti**2))return null;let[l,h,u,m,p,f]=Ns(i),d=([M,P])=>Math.abs((l*M+u*P+p)/n-1)<1+kr&&Math.abs((h*M+m*P+f)/s-1)<
+_i**2&&c<Ai**2))return null;let[l,h,u,m,p,f]=Ns(i),d=([M,P])=>Math.abs((l*M+u*P+p)/n-1)<1+kr&&Math.abs((h*M+m*P+f)/s-1)<
 1+kr,b=[[0,0],[t,0],[0,r],[t,r]].every(d),[g,y,x,v]=i,w=Math.abs(g-1)+Math.abs(v-1)+Math.abs(y)+Math.abs(x)<kr;if(w)for(let M of[
-4,5])i[M]=Math.round(i[M]);return{matrix:i,covers:b,shifts:w}}var Tt=4,_t=class{surface;limits;sums;whole=[[]];last=null;constructor(e,t){this.surface=e,this.limits=t;let r=0;this.sums=
-Float64Array.from({length:e.corners.length/Tt},(n,s)=>r+=this.area(Or(s)))}seen(e,t){return(!this.last||!this.covers(this.
+4,5])i[M]=Math.round(i[M]);return{matrix:i,covers:b,shifts:w}}var At=4,_t=class{surface;limits;sums;whole=[[]];last=null;constructor(e,t){this.surface=e,this.limits=t;let r=0;this.sums=
+Float64Array.from({length:e.corners.length/At},(n,s)=>r+=this.area(Or(s)))}seen(e,t){return(!this.last||!this.covers(this.
 last.wanted,[e,t]))&&(this.last={wanted:[e,t],seeds:this.make([e,t])}),this.last.seeds}position(e,t){let{nodes:r,corners:n}=this.
-surface;return Ie(r,n.subarray(Tt*e,Tt*(e+1)),t,3)}point(e){let{frame:t,center:r}=this.surface.geometry;return A(K(t,e),
-r)}covers([e,t],[r,n]){let{closer:s}=this.limits;return this.cornersOf(r).every(o=>s*t*At(e,o)<=n*At(r,o)&&this.sees(e,o,
+surface;return Ie(r,n.subarray(At*e,At*(e+1)),t,3)}point(e){let{frame:t,center:r}=this.surface.geometry;return T(K(t,e),
+r)}covers([e,t],[r,n]){let{closer:s}=this.limits;return this.cornersOf(r).every(o=>s*t*Tt(e,o)<=n*Tt(r,o)&&this.sees(e,o,
 0))}cornersOf({planes:e}){let{center:t,extent:r}=this.surface.geometry,n=c=>e[c].slice(0,3),s=N(n(0),n(2)),o=.5*r*O(s);return[
-0,1].flatMap(c=>[2,3].flatMap(l=>[-1,1].map(h=>[c,l,h]))).map(([c,l,h])=>{let[u,m]=[n(c),n(l)],p=A(k(N(m,s),-e[c][3]),N(
-s,u),-e[l][3]),f=N(u,m);return k(A(p,f,T(s,t)+h*o),1/T(f,s))})}sees(e,t,r){let n=r+this.limits.around*e.pixels*At(e,t);return e.
-planes.every(s=>T(s,t)+s[3]>=-n*O(s))}make(e){let[t,r]=e,{limits:n,sums:s,whole:o}=this,{extent:i,center:c}=this.surface.
+0,1].flatMap(c=>[2,3].flatMap(l=>[-1,1].map(h=>[c,l,h]))).map(([c,l,h])=>{let[u,m]=[n(c),n(l)],p=T(k(N(m,s),-e[c][3]),N(
+s,u),-e[l][3]),f=N(u,m);return k(T(p,f,A(s,t)+h*o),1/A(f,s))})}sees(e,t,r){let n=r+this.limits.around*e.pixels*Tt(e,t);return e.
+planes.every(s=>A(s,t)+s[3]>=-n*O(s))}make(e){let[t,r]=e,{limits:n,sums:s,whole:o}=this,{extent:i,center:c}=this.surface.
 geometry,l=s[s.length-1]??0,h=t.eye?Math.max(O(E(c,t.eye))-.5*i,0):1,u=n.closer*r*Fr(t,h),m=i,p=o[0],f=null;for(let d=0;d<
 n.mostOctaves;d+=1){let b=n.candidateArea*m**2;if(l<=n.mostCandidates*b)o[d+1]??=this.grown(p,this.spread(d,b),m),p=o[d+
 1];else{f??=Array.from(s,(y,x)=>Or(x)),f=this.divided(f.filter(y=>this.isNeeded(y,e,m)),b);let g=f.flatMap(y=>{let x=le(
 y.key+d);return St(x)*b<this.area(y)?[this.candidate(y,x)]:[]});if(p=this.grown(p,g,m),!f.length)break}if(m<=u)break;m*=
-n.octave}return p.filter(d=>{let b=this.point(d.position);return d.radius>=n.closer*r*At(t,b)&&this.sees(t,b,0)})}spread(e,t){
+n.octave}return p.filter(d=>{let b=this.point(d.position);return d.radius>=n.closer*r*Tt(t,b)&&this.sees(t,b,0)})}spread(e,t){
 let{sums:r}=this,n=le(e+Et),s=0;return Array.from({length:Math.floor((r[r.length-1]??0)/t)},(o,i)=>{let c=le(n+i),l=(i+St(
 c))*t;for(;s<r.length-1&&r[s]<=l;)s+=1;return this.candidate(Or(s),c)})}candidate({cell:e,low:t,size:r},n){let s=le(n+Et),
 o=le(s+Et),i=[t[0]+r[0]*St(s),t[1]+r[1]*St(o)];return{cell:e,place:i,position:this.position(e,i),radius:1/0}}grown(e,t,r){
@@ -600,14 +600,14 @@ t);if(!r.length)return e;let n=r.map(o=>{let[i,c]=this.sides(o),l=O(c)>O(i)?1:0,
 return u[l]+=h[l],[{...o,size:h,key:le(o.key+Et)},{...o,size:h,low:u,key:le(o.key+Ri)}]}),s=e.filter(o=>this.area(o)<=t);
 return this.divided([...s,...n.map(([o])=>o),...n.map(([,o])=>o)],t)}sides({cell:e,low:t,size:r}){let n=(s,o)=>this.position(
 e,[t[0]+r[0]*s,t[1]+r[1]*o]);return[E(n(1,.5),n(0,.5)),E(n(.5,1),n(.5,0))]}area(e){return O(N(...this.sides(e)))}};function Ie(a,e,[
-t,r],n){let s=[(1-r)*(1-t),(1-r)*t,r*(1-t),r*t],o=new Array(n).fill(0);for(let i=0;i<Tt;i+=1)for(let c=0;c<n;c+=1)o[c]+=
+t,r],n){let s=[(1-r)*(1-t),(1-r)*t,r*(1-t),r*t],o=new Array(n).fill(0);for(let i=0;i<At;i+=1)for(let c=0;c<n;c+=1)o[c]+=
 s[i]*a[n*e[i]+c];return o}var Pt=class{most;cubes=new Map;constructor(e){this.most=e}cube(e){return e.map(t=>Math.floor(
 t/this.most))}add(e){let t=Cs(...this.cube(e)),r=this.cubes.get(t);r?r.push(e):this.cubes.set(t,[e])}distance(e){let[t,r,
 n]=this.cube(e),s=this.most;for(let o=0;o<27;o+=1){let i=Cs(t+o%3-1,r+Math.floor(o/3)%3-1,n+Math.floor(o/9)-1);for(let c of this.
 cubes.get(i)??[])s=Math.min(s,O(E(e,c)))}return s}},Et=2654435769,Ri=2246822507,Li=[739982445,695872825],Is=15;function Cs(a,e,t){
 return Math.imul(a,2376512323)^Math.imul(e,3625334849)^Math.imul(t,3407524639)}function le(a){let e=a>>>0;for(let t of Li)
 e=Math.imul(e^e>>>Is,t)>>>0;return(e^e>>>Is)>>>0}var St=a=>a/2**32;function Or(a){return{cell:a,low:[0,0],size:[1,1],key:le(
-a)}}var Us=({eye:a},e)=>a?O(E(e,a)):1,Fr=({halfHeight:a,pixels:e},t)=>2*a/e*t,At=(a,e)=>Fr(a,Us(a,e));var Bs=[[0,3],[1,2],[2,3],[3,2],[4,3],[5,1]],Vs=4,ki=Bs.reduce((a,[,e])=>a+e,0),Oi=(a,e)=>a.length===e.length&&a.every((t,r)=>t===
+a)}}var Us=({eye:a},e)=>a?O(E(e,a)):1,Fr=({halfHeight:a,pixels:e},t)=>2*a/e*t,Tt=(a,e)=>Fr(a,Us(a,e));var Bs=[[0,3],[1,2],[2,3],[3,2],[4,3],[5,1]],Vs=4,ki=Bs.reduce((a,[,e])=>a+e,0),Oi=(a,e)=>a.length===e.length&&a.every((t,r)=>t===
 e[r]),Ds=({tile:a})=>a?.[0]??1/0,Rt=class{graphics;header;parts;seeds=null;array=null;buffer=null;known=null;last=null;drawn=null;constructor(e,t,r){
 this.graphics=e,this.header=t,this.parts=r}program(e,t){let{shaders:r,geometry:n}=this.header;if(!Le(this.header,e))return null;
 let s=t&&!n.triangles?["FLOWTEX_CELLS"]:[];return this.graphics.programs.get(r.arrowVertex,r.arrowFragment,...s)}share(e,t,r){
@@ -632,14 +632,14 @@ e.bindVertexArray(t),e.bindBuffer(e.ARRAY_BUFFER,this.buffer);let r=0;for(let[n,
 n,s,e.FLOAT,!1,ki*Vs,r),e.vertexAttribDivisor(n,1),r+=s*Vs;return t}numbers(e,t,r){let{geometry:n,scalars:s}=this.header,
 o=t.map(h=>this.parts.get(h)?.data??new Float32Array),i=bt(o,s),c=this.nodes,l=n.triangles?null:Kn(n);return Float32Array.
 from(e.flatMap(({corners:h,place:u,radius:m,cell:p})=>{let[f,d]=u,[b,g,y,x]=Array.from(h,w=>[...c.subarray(3*w,3*w+3)]),
-v=N(E(A(g,x),A(b,y)),E(A(y,x),A(b,g)));return[...E(Ie(c,h,u,3),r),...l?Ie(l,h,u,2):[f*(1-d),d],...C(v),...s.flat?i.subarray(
+v=N(E(T(g,x),T(b,y)),E(T(y,x),T(b,g)));return[...E(Ie(c,h,u,3),r),...l?Ie(l,h,u,2):[f*(1-d),d],...C(v),...s.flat?i.subarray(
 2*p,2*p+2):Ie(i,h,u,2),...Array.from(h).slice(0,3),m]}))}get nodes(){return this.parts.get("position")?.data??new Float32Array}get surface(){
 return this.known??={geometry:this.header.geometry,nodes:this.nodes,corners:this.corners()}}corners(){let{geometry:e}=this.
 header,[t,r]=e.shape,n=[];if(e.triangles){let o=this.parts.get("triangles")?.data??[];for(let i=0;i<o.length;i+=3)n.push(
 o[i],o[i+1],o[i+2],o[i+2]);return Uint32Array.from(n)}let s=this.parts.get("cells")?.data;for(let o=0;o<(t-1)*(r-1);o+=1){
-if(s&&!s[o])continue;let i=o+Math.floor(o/(r-1));n.push(i,i+1,i+r,i+r+1)}return Uint32Array.from(n)}};var Ce=["bodyPoints","bodyNormals","bodyColours","bodyFaces","bodyPieces"],Hs=8,[Fi,Ni]=[24,8],Te=[1,2],Ii=.2;function Ue(a,e,t){
+if(s&&!s[o])continue;let i=o+Math.floor(o/(r-1));n.push(i,i+1,i+r,i+r+1)}return Uint32Array.from(n)}};var Ce=["bodyPoints","bodyNormals","bodyColours","bodyFaces","bodyPieces"],Hs=8,[Fi,Ni]=[24,8],Ae=[1,2],Ii=.2;function Ue(a,e,t){
 let r=a.constructor,n=new r(t*e.length);for(let s=0;s<e.length;s+=1)for(let o=0;o<t;o+=1)n[t*s+o]=a[t*e[s]+o];return n}function Ci({
-geometry:a,bodies:e},t){let[r,n,s]=t.axes,o=(e?.lights??[]).slice(0,Hs),i=o.map(({way:l,turns:h})=>{let u=A(A(k(r,l[0]),
+geometry:a,bodies:e},t){let[r,n,s]=t.axes,o=(e?.lights??[]).slice(0,Hs),i=o.map(({way:l,turns:h})=>{let u=T(T(k(r,l[0]),
 n,l[1]),s,-l[2]);return F(a.frame,h?u:l)}),c=l=>Float32Array.from({length:3*Hs},(h,u)=>l.flat()[u]??0);return{u_lightWays:c(
 i),u_lightColours:c(o.map(({color:l})=>l))}}var Lt=class{graphics;header;parts;drawn=null;constructor(e,t,r){this.graphics=
 e,this.header=t,this.parts=r}get labels(){return this.header.bodies?.labels??[]}get runs(){let{bodies:e}=this.header;return e&&
@@ -648,20 +648,20 @@ let{programs:e}=this.graphics,{bodyVertex:t,bodyFragment:r,lineVertex:n,lineFrag
 t,r),e.get(n,s,"FLOWTEX_BODY"),e.get(t,r,"FLOWTEX_HIDING")]}get isReady(){return!this.runs.length||this.programs.every(({
 ready:e})=>e)}dispose(){let{drawn:e,graphics:t}=this;if(e){for(let r of e.buffers)t.free("Buffer",r);t.free("VertexArray",
 e.faces),t.free("VertexArray",e.pieces),this.drawn=null}}seeThrough(e,t=this.areBehind){if(!this.runs.length)return e();
-let r=this.graphics.context;r.enable(r.POLYGON_OFFSET_FILL),r.polygonOffset(Te[0],Te[0]),t&&(r.enable(r.BLEND),r.blendColor(
+let r=this.graphics.context;r.enable(r.POLYGON_OFFSET_FILL),r.polygonOffset(Ae[0],Ae[0]),t&&(r.enable(r.BLEND),r.blendColor(
 0,0,0,this.header.opacity),r.blendFuncSeparate(r.CONSTANT_ALPHA,r.ONE_MINUS_CONSTANT_ALPHA,r.ZERO,r.ONE)),e(),r.disable(
 r.BLEND),r.disable(r.POLYGON_OFFSET_FILL)}draw({camera:e,anchor:t,width:r,height:n,ratio:s},o){let i=o==="clear",c=this.
 runs.filter(({clear:P})=>P===i);if(!c.length)return;let{header:l,graphics:h}=this,{geometry:u}=l,m=h.context,[p,f]=this.
 programs,d=this.drawn??=this.make(),b=G(u,e,t),[g,y,x,v]=e.eye,w=F(u.frame,E([g,y,x],k(u.center,v)));i&&(m.enable(m.BLEND),
 m.blendFuncSeparate(m.SRC_ALPHA,m.ONE_MINUS_SRC_ALPHA,m.ZERO,m.ONE),m.depthMask(!1)),h.programs.use(p,{u_matrix:b,u_anchor:t,
-u_eye:[...E(w,k(t,v)),v],...Ci(l,e)}),m.bindVertexArray(d.faces),m.enable(m.POLYGON_OFFSET_FILL),m.polygonOffset(Te[1],Te[1]);
+u_eye:[...E(w,k(t,v)),v],...Ci(l,e)}),m.bindVertexArray(d.faces),m.enable(m.POLYGON_OFFSET_FILL),m.polygonOffset(Ae[1],Ae[1]);
 for(let{faces:[P,S],ambient:R,diffuse:L}of c)S&&(h.programs.use(p,{u_ambient:R,u_diffuse:L}),m.drawElements(m.TRIANGLES,
 3*S,m.UNSIGNED_INT,12*P));m.disable(m.POLYGON_OFFSET_FILL);let M={u_matrix:b,u_anchor:t,u_picture:[r,n],u_horizon:[0,0,0,
 1]};h.programs.use(f,M),m.bindVertexArray(d.pieces);for(let{pieces:[P,S],width:R}of c)if(S){h.programs.use(f,{u_width:R*
 s});for(let[L,U,I,J,ae]of[[d.ends,3,m.FLOAT,Fi,0],[d.colours,4,m.UNSIGNED_BYTE,Ni,2]]){m.bindBuffer(m.ARRAY_BUFFER,L);for(let V of[
 0,1])m.vertexAttribPointer(ae+V,U,I,U===4,J,J*(P+V/2))}m.drawArraysInstanced(m.TRIANGLE_STRIP,0,4,S)}m.bindVertexArray(null),
 m.depthMask(!0),m.disable(m.BLEND)}hide(e,t){let{runs:r,graphics:n}=this;if(!r.length)return;let s=n.context,o=this.drawn??=
-this.make();s.enable(s.POLYGON_OFFSET_FILL),s.polygonOffset(Te[1],Te[1]),n.programs.use(this.programs[2],{u_matrix:e,u_anchor:t}),
+this.make();s.enable(s.POLYGON_OFFSET_FILL),s.polygonOffset(Ae[1],Ae[1]),n.programs.use(this.programs[2],{u_matrix:e,u_anchor:t}),
 s.bindVertexArray(o.faces);for(let{faces:[i,c],clear:l}of r)l||s.drawElements(s.TRIANGLES,3*c,s.UNSIGNED_INT,12*i);s.disable(
 s.POLYGON_OFFSET_FILL),s.bindVertexArray(null)}drawLabels(e,{camera:t,anchor:r,width:n,height:s,ratio:o}){let{geometry:i}=this.
 header,c=G(i,t,r);for(let{text:l,position:h,size:u,color:m,plate:p}of this.labels){let f=E(F(i.frame,E(h,i.center)),r),[
@@ -674,7 +674,7 @@ y,g,r.STATIC_DRAW),x},u=l(),p=[[n,3,r.FLOAT],[s,3,r.BYTE],[o,4,r.UNSIGNED_BYTE]]
 v),r.vertexAttribPointer(v,y,x,x!==r.FLOAT,0,0),w});p.push(h(i,r.ELEMENT_ARRAY_BUFFER));let f=l(),d=h(Ue(n,c,3)),b=h(Ue(
 o,c,4));for(let g=0;g<4;g+=1)r.enableVertexAttribArray(g),r.vertexAttribDivisor(g,1);return r.bindVertexArray(null),{faces:u,
 pieces:f,ends:d,colours:b,buffers:[...p,d,b]}}};function Gs([a,e,t,r=1]){return`rgb(${[a,e,t].map(n=>Math.round(255*n)).
-join(" ")} / ${r})`}var kt=["land","missing"];var Ui=.18;function zs({background:a,earth:e}){let t=a??[1,1,1],r=e?.missingShare??0,n=T(t.map(s=>s**2.2),[.2126,.7152,.0722])>=
+join(" ")} / ${r})`}var kt=["land","missing"];var Ui=.18;function zs({background:a,earth:e}){let t=a??[1,1,1],r=e?.missingShare??0,n=A(t.map(s=>s**2.2),[.2126,.7152,.0722])>=
 Ui?0:1;return t.map(s=>s*(1-r)+n*r)}var Ys=1e30,Ws=65535,$s=256;function Vi(a,{low:e,size:t}){let r=[],n=[0,0,0];for(let s=0;s<a.length;s+=4){a[s+3]&&r.push(
 []);let o=n.map((i,c)=>(n[c]=n[c]+a[s+c]&Ws,e[c]+n[c]/Ws*t[c]));r[r.length-1].push(o)}return r}function Di(a,e){return e?
 a.flatMap(t=>{let r=0,n=t.filter((s,o)=>{let i=r;return o&&(r+=Math.hypot(...s.map((l,h)=>l-t[o-1][h]))),Math.floor(r/e)>
@@ -711,8 +711,8 @@ let f=p==="land"?s.land:u,d=E(F(o.frame,k(o.center,-1)),t);n.programs.use(m,{...
 take(p,t,()=>this.cellsOf(p,t));l.bindVertexArray(b.array),l.drawElements(l.TRIANGLES,b.count,l.UNSIGNED_INT,0)}l.depthMask(
 !0),l.bindVertexArray(null)}horizon(e){let{earth:t}=this.header;if(!t||t.map)return null;let{radius:r}=t,[n,s,o,i]=e.eye,
 c=i*Math.hypot(n,s,o);return[...C([n,s,o]),c?-(r**2)/c:0]}localPlane(e,t){let{frame:r,center:n}=this.header.geometry,s=e.
-slice(0,3),o=F(r,s);return[...o,T(o,t)+T(s,n)+e[3]]}disc(e,t,r){let{frame:n,center:s}=this.header.geometry,[o,i,c,l]=this.
-horizon(e)??[0,0,1,0],h=[o,i,c],u=Math.sqrt(Math.max(t**2-l**2,0)),m=C(N(e.axes[1],h)),p=N(h,m),f=A(k(h,-l),s,-1);return{
+slice(0,3),o=F(r,s);return[...o,A(o,t)+A(s,n)+e[3]]}disc(e,t,r){let{frame:n,center:s}=this.header.geometry,[o,i,c,l]=this.
+horizon(e)??[0,0,1,0],h=[o,i,c],u=Math.sqrt(Math.max(t**2-l**2,0)),m=C(N(e.axes[1],h)),p=N(h,m),f=T(k(h,-l),s,-1);return{
 u_middle:E(F(n,f),r),u_aside:k(F(n,m),u),u_upward:k(F(n,p),u),u_away:e.state.parallel?0:O(e.state.position)/t}}take(e,t,r,n=0){
 let s=this.drawn.get(e);if(s&&String([s.anchor,s.spacing])===String([t,n]))return s;this.drop(e);let o={...r(),anchor:t,
 spacing:n};return this.drawn.set(e,o),o}emptyArray(){let{graphics:e}=this;return{array:e.counted(e.context.createVertexArray()),
@@ -760,7 +760,7 @@ counted(r.createVertexArray()),this.buffer??=t.counted(r.createBuffer()),r.bindV
 this.buffer),r.bufferData(r.ARRAY_BUFFER,Float32Array.from(e.flatMap(n=>[...n])),r.STATIC_DRAW);for(let n of[0,1])r.enableVertexAttribArray(
 n),r.vertexAttribDivisor(n,1);r.bindVertexArray(null)}at({place:e,position:t,height:r},n,s,o){let{geometry:i,structure:c}=this.
 header,[l,h]=this.shown(s,o,"critical"),u=2*n.height/Math.max(r,1),[m,p]=["",Ks];for(let f=0;f<Math.min(l,h?.shape[0]??0);f+=
-1){let[d,b,g,y]=[0,1,2,3].map(M=>Number(h?.data[ne*f+M])),x=A(K(i.frame,[d,b,g]),i.center),v=n.project(x);if(!v||Math.hypot(
+1){let[d,b,g,y]=[0,1,2,3].map(M=>Number(h?.data[ne*f+M])),x=T(K(i.frame,[d,b,g]),i.center),v=n.project(x);if(!v||Math.hypot(
 ...E(x,t))>4*Ks*u)continue;let w=.5*r*Math.hypot((v[0]-e[0])*n.aspect,v[1]-e[1]);w<p&&([m,p]=[c?.kinds[y]?.name??"",w])}
 return m}dispose(){this.graphics.free("Buffer",this.buffer),this.graphics.free("VertexArray",this.array),this.array=this.
 buffer=this.drawn=null}};function Nr([a,e,t]){return t<.5?a:e}var Xi={position:["nodes"],normal:["nodes"],cells:["cells"],triangles:["nodes","cells","scalar"],blocks:["cells"],cmap:[
@@ -802,7 +802,7 @@ let r=e.map(n=>this.parts.has(n)?this.part(n).digest:"none");return r.every(Bool
 let o=this.resources.get(e);if(o)return o.object;let{graphics:i}=this,c=r&&`${e.split("/")[0]} ${r}`,l=c?i.common.get(c):
 void 0,h=l?.object??i.counted(n()),u=l??{kind:t,object:h,count:0,key:c,users:0};return u.users+=1,this.resources.set(e,u),
 l||(u.count=s(h)||0),c&&i.common.set(c,u),h}get blocks(){return this.part("mesh")}get doublings(){let{geometry:e,mesh:t}=this.
-header;return this.most??=Ts(e,this.blocks,this.part("position").data,t.tileCells)}cornersAt(e){let{triangles:t,shape:r}=this.
+header;return this.most??=As(e,this.blocks,this.part("position").data,t.tileCells)}cornersAt(e){let{triangles:t,shape:r}=this.
 header.geometry;return t?ts(this.part("triangles").data,e):Qn(r,e)}isLoaded(e){return e.every(t=>this.resources.has(`sli\
 ces/${t}`))}get tracedBytes(){let{slices:e,geometry:t}=this.header;return e.trace?[...this.resources.keys()].filter(n=>n.
 startsWith("slices/")).length*Yi*e.count*t.rows.size*t.columns.size:0}load(e){for(let t of e)this.slices(t)}bindNodes(e){
@@ -847,14 +847,14 @@ bind("u_shares",s.name===null?null:this.table("scalar",c,r.RG32F,this.nodesSize[
 []);this.bind("u_along",n&&this.table("along","",r.RG32F,Math.max(n.alongI.length,n.alongJ.length),h))}};function Qs(a,e){
 a.texParameteri(e,a.TEXTURE_MIN_FILTER,a.NEAREST),a.texParameteri(e,a.TEXTURE_MAG_FILTER,a.NEAREST)}function Zi(a,e){if(a.
 length===e)return a;let t=new a.constructor(e);return t.set(a),t}var Qi=60,ec=25,tc=9e8,rc=3.5,nc={slices:4,flow:24},Nt=class{layers=[];missing=[];wanted=0;pending=0;host;root;tiles=new Map;pyramid=null;chosen={
-choices:new Map,steps:[],names:""};count=0;isWaiting=!1;hasAsked=!1;isOver=!1;failed=new Ae;constructor(e,t){this.host=e,
+choices:new Map,steps:[],names:""};count=0;isWaiting=!1;hasAsked=!1;isOver=!1;failed=new Te;constructor(e,t){this.host=e,
 this.root=t}has(e,t){return this.tiles.get(e)?.parts.has(t)??!1}fail(e,t){this.failed.add(this.need(e,t)),this.host.refine()}need(e,t){
 return`${e} ${t} ${this.root.header.scalars.name}`}dispose(){this.isOver=!0;for(let e of[...this.tiles.keys()])this.drop(
 e)}setPart(e,t){let{graphics:r,header:n}=this.root,s=this.tiles.get(e)??this.emptyTile();if(this.tiles.set(e,s),t.digest&&
 s.parts.get(t.name)?.digest===t.digest)return;if(r.release(s.parts.get(t.name)),s.parts.set(t.name,r.hold(t)),t.name==="\
 header"){let l=JSON.parse(new TextDecoder().decode(t.data));s.scene?.dispose(),l&&(l.geometry.reach=n.geometry.reach),s.
 scene=l&&new _e(r,{...n,...l,pyramid:null,bodies:null,structure:null},s.parts,ce(e)),this.giveMap(s)}else s.scene?.forget(
-t.name);let{names:o,steps:i}=this.chosen;this.missing=this.missing.filter(l=>!this.isHere(l,i));let c=Tr(this.chosen.choices,
+t.name);let{names:o,steps:i}=this.chosen;this.missing=this.missing.filter(l=>!this.isHere(l,i));let c=Ar(this.chosen.choices,
 l=>this.isHere(l,i));String([...c.keys()])!==o&&this.host.refine()}recolour(e={}){let{steps:t}=this.chosen;for(let r of this.
 tiles.values()){let{scene:n,parts:s}=r;if(!n||(Object.assign(n.header,e),this.giveMap(r),n.forget("scalars"),(t.length?n.
 scalarParts(t[0],t[t.length-1]):[]).every(c=>s.has(c))))continue;let i=[...s.keys()].filter(c=>c.startsWith("scalars/"));
@@ -867,7 +867,7 @@ root,{settings:n,canvas:s,ratio:o}=this.host;if(!r.pyramid)return new Map;this.p
 part("places").data);let i=this.pyramid.choose({...e.sight(s.height/o),planes:e.planes,cellPixels:zn(r.pyramid,n),shownOn:this.
 host.shownOn});this.count+=1;for(let u of i.keys()){let m=this.tiles.get(u);m&&(m.used=this.count)}let c=performance.now()+
 ec,l=this.obtainable(Wn(i),t,r.pyramid.depth);this.missing=l.filter(u=>!this.isHere(u,t)),this.ask(),this.trim(t);for(let u of l)
-this.isHere(u,t)&&this.load(u,t,c);let h=Tr(i,u=>this.isHere(u,t)&&this.load(u,t,c));return this.wanted=l.length,this.pending=
+this.isHere(u,t)&&this.load(u,t,c);let h=Ar(i,u=>this.isHere(u,t)&&this.load(u,t,c));return this.wanted=l.length,this.pending=
 l.filter(u=>!this.isHere(u,t)||!this.isLoaded(u,t)).length,this.chosen={choices:i,steps:t,names:String([...h.keys()])},h}obtainable(e,t,r){
 let n=[t,...t.map(i=>[i])],s=i=>n.some(c=>this.failed.has(this.need(i,c))),o=e.map(i=>{let[c,l,h]=ce(i);for(;c<r&&s(z([c,
 l,h]));)[c,l,h]=[c+1,l>>1,h>>1];return c<r?z([c,l,h]):B});return[...new Set(o)].filter(i=>i!==B)}isHere(e,t){let r=this.
@@ -891,7 +891,7 @@ t.graphics)}leave(){this.tiles?.dispose(),this.scene?.dispose(),this.places?.dis
 null}dispose(){this.leave(),this.renderer.dispose()}restart(e){this.renderer.restart(e)}resize(e,t){this.renderer.resize(
 e,t)}refine(){this.renderer.refine()}arrange(e){let t=this.tiles?.arrange(e)??[];return this.view.root.dataset.tiles=String(
 this.tiles?.pending??0),t}get smooth(){let{header:e,options:t}=this.view;return t.smooth!==void 0||!e?t.smooth??!1:this.
-program(e).price<Tn}get isComing(){return!!this.tiles?.missing.length}get lacking(){let[e,t]=this.view.player.moment;return this.
+program(e).price<An}get isComing(){return!!this.tiles?.missing.length}get lacking(){let[e,t]=this.view.player.moment;return this.
 scene?.missing(e,t)??[]}missing(e){return[...new Set(e.flatMap(t=>this.scene?.lacking(t)??[]))]}make(e,t){return this.next=
 e,!this.missing(e).length&&!!this.scene?.make(e,t)}available(e){let{view:t,scene:r,shown:n,lacking:s}=this,{header:o,player:i}=t;
 if(!o||!r)return null;let c=i.moment,l=i.playing?[1,2].map(p=>(c[1]+p)%o.slices.steps):[],h=this.missing([c[0],c[1],...this.
@@ -990,14 +990,14 @@ void main()
 ([l])=>l),s={seen:Math.max(...t.map(l=>Math.acos(Math.min(l[2],1)))),south:Math.min(...n),north:Math.max(...n),aside:Math.
 max(...r.map(([,l])=>Math.abs(l)))},o=Vt*s.seen,i=na(e,a,1)||s.north+o>Ut,c=na(e,a,-1)||s.south-o<-Ut;return s.seen+=o,s.
 north=i?Ut:s.north+o,s.south=c?-Ut:s.south-o,s.aside=i||c?Math.PI:Math.min((1+Vt)*s.aside,Math.PI),s}function oc({bearing:a,
-pitch:e,away:t}){let r=[Math.sin(a),Math.cos(a),0],n=A(k(r,Math.sin(e)),[0,0,-Math.cos(e)]),s=A(k(r,Math.cos(e)),[0,0,Math.
-sin(e)]);return{eye:A([0,0,1],n,-t),look:k(n,t),right:[r[1],-r[0],0],up:s}}function ic([a,e]){let t=[];for(let r=0;r<=ra;r+=
+pitch:e,away:t}){let r=[Math.sin(a),Math.cos(a),0],n=T(k(r,Math.sin(e)),[0,0,-Math.cos(e)]),s=T(k(r,Math.cos(e)),[0,0,Math.
+sin(e)]);return{eye:T([0,0,1],n,-t),look:k(n,t),right:[r[1],-r[0],0],up:s}}function ic([a,e]){let t=[];for(let r=0;r<=ra;r+=
 1){let n=2*r/ra-1;t.push([n*a,e],[n*a,-e],[a,n*e],[-a,n*e])}return t}function cc({eye:a,look:e,right:t,up:r},[n,s]){let o=C(
-A(A(e,t,n),r,s)),i=-T(a,o),c=i**2-T(a,a)+1;if(c>0&&i>0)return A(a,o,i-Math.sqrt(c));let l=1/O(a),h=C(a),u=C(A(o,h,-T(o,h)));
-return A(k(h,l),u,Math.sqrt(1-l**2))}function lc([a,e,t],r){let n=t*Math.sin(r)+e*Math.cos(r),s=t*Math.cos(r)-e*Math.sin(
+T(T(e,t,n),r,s)),i=-A(a,o),c=i**2-A(a,a)+1;if(c>0&&i>0)return T(a,o,i-Math.sqrt(c));let l=1/O(a),h=C(a),u=C(T(o,h,-A(o,h)));
+return T(k(h,l),u,Math.sqrt(1-l**2))}function lc([a,e,t],r){let n=t*Math.sin(r)+e*Math.cos(r),s=t*Math.cos(r)-e*Math.sin(
 r);return[Math.asin(Math.min(Math.max(n,-1),1)),Math.atan2(a,s)]}function na({eye:a,look:e,right:t,up:r},{latitude:n,away:s,
-half:o},i){let c=[0,i*Math.cos(n),i*Math.sin(n)],l=T(c,a)>=1-Vt,h=A(c,a,-1),u=T(h,e)/s**2,m=(1+Vt)*u;return l&&Math.abs(
-T(h,t))<=m*o[0]&&Math.abs(T(h,r))<=m*o[1]}var Cr=1e-5,Dt=Math.atan(Math.sinh(Math.PI))*180/Math.PI,D=Math.PI/180,hc=88*D,aa='export it with projection="mercator"';
+half:o},i){let c=[0,i*Math.cos(n),i*Math.sin(n)],l=A(c,a)>=1-Vt,h=T(c,a,-1),u=A(h,e)/s**2,m=(1+Vt)*u;return l&&Math.abs(
+A(h,t))<=m*o[0]&&Math.abs(A(h,r))<=m*o[1]}var Cr=1e-5,Dt=Math.atan(Math.sinh(Math.PI))*180/Math.PI,D=Math.PI/180,hc=88*D,aa='export it with projection="mercator"';
 function be({lng:a,lat:e}){let t=Math.sin(_(e,-Dt,Dt)*D);return[a/360+.5,.5-Math.atanh(t)/(2*Math.PI)]}function Ht(a){return 1/
 Math.cos(_(a,-Dt,Dt)*D)}var Bt=class{origin;slope;box;constructor(e,t,r){let n=e?.map;if(!n||!t)throw new Error(`the flo\
 w is not on a map; ${aa}`);let[s,o]=r??[n[0],n[2]];this.box=[s,n[1],o,n[3]];let[i,c]=t.shape,l=(x,v)=>{let[w,M,P]=t.data.
@@ -1026,7 +1026,7 @@ l,s],up:[0,1,0],parallel:!0,parallel_scale:.5*u/this.slope[0],view_angle:e.fov},
 width:h*o,height:u*o,shownOn:p}}};function uc({center:a,width:e,height:t,bearing:r,pitch:n,fov:s},o){let i=o*Ht(a.lat)/(2*
 Math.PI);return{latitude:a.lat*D,bearing:r*D,pitch:n*D,away:.5*t/Math.tan(.5*s*D)/i,half:[.5*e/i,.5*t/i]}}var Ur=class{mercator;middle;cosine;seen;constructor(e,{
 lng:t,lat:r},n){this.mercator=e,this.middle=oa(t,r),this.cosine=1/Ht(r),this.seen=n}sees(e){let[t,r,,n]=Array.from(e);return Math.
-acos(_(T(oa(...this.mercator.lngLatOf([t,r])),this.middle),-1,1))<=this.seen+this.angle(n)}scale(e){let[,t,,r]=Array.from(
+acos(_(A(oa(...this.mercator.lngLatOf([t,r])),this.middle),-1,1))<=this.seen+this.angle(n)}scale(e){let[,t,,r]=Array.from(
 e),n=Math.abs(2*Math.PI*(this.mercator.placeOf([0,t])[1]-.5)),s=Math.max(n-this.angle(r),0);return Math.min(1/Math.cosh(
 s)/this.cosine,1)}angle(e){return 2*Math.PI*this.mercator.slope[0]*e}};function oa(a,e){let t=Math.cos(e*D);return[t*Math.
 cos(a*D),t*Math.sin(a*D),Math.sin(e*D)]}function ia({width:a,height:e,pitch:t,fov:r}){let[n,s]=[t*D,.5*r*D],o=n+s;if(o>hc)
@@ -1158,10 +1158,10 @@ ha();let n=this[nr],s=await n.getChunkBytes(e,t);if(!s){let o=n.chunkShape.reduc
 let c=new n.TypedArray(0);if(!("BYTES_PER_ELEMENT"in c))console.warn("zarrita: useSharedArrayBuffer is not supported for\
  non-buffer-backed data types."),i=new n.TypedArray(o);else{let l=ua(o*c.BYTES_PER_ELEMENT,!0);i=new n.TypedArray(l,0,o)}}else
 i=new n.TypedArray(o);return i.fill(n.fillValue),{data:i,shape:n.chunkShape,stride:n.getStrides(n.chunkShape)}}return n.
-codec.decode(s)}is(e){return Wt(this.dtype,e)}};function Aa(a,e){let t=a;for(let r of e)t instanceof Promise?t=t.then(n=>r(n)):t=r(t);return t}function Ta(a,...e){return Aa(a,e)}async function Ra(a){let e=a.store.arrayExtensions;return e?.length?await Ta(a,...e):a}var ar=Sc();function Sc(){let a=new WeakMap;
+codec.decode(s)}is(e){return Wt(this.dtype,e)}};function Ta(a,e){let t=a;for(let r of e)t instanceof Promise?t=t.then(n=>r(n)):t=r(t);return t}function Aa(a,...e){return Ta(a,e)}async function Ra(a){let e=a.store.arrayExtensions;return e?.length?await Aa(a,...e):a}var ar=Sc();function Sc(){let a=new WeakMap;
 function e(t){let r=a.get(t)??{v2:0,v3:0};return a.set(t,r),r}return{increment(t,r){e(t)[r]+=1},versionMax(t){let r=e(t);
-return r.v3>r.v2?"v3":"v2"}}}async function Ac(a,e){let t=await a.store.get(a.resolve(".zattrs").path,{signal:e});return t?
-$e(t):{}}async function Tc(a,e={}){let t="store"in a?a:new se(a),{signal:r}=e,n={};return(e.attrs??!0)&&(n=await Ac(t,r)),
+return r.v3>r.v2?"v3":"v2"}}}async function Tc(a,e){let t=await a.store.get(a.resolve(".zattrs").path,{signal:e});return t?
+$e(t):{}}async function Ac(a,e={}){let t="store"in a?a:new se(a),{signal:r}=e,n={};return(e.attrs??!0)&&(n=await Tc(t,r)),
 r?.throwIfAborted(),e.kind==="array"?_a(t,n,r):e.kind==="group"?Pa(t,n,r):_a(t,n,r).catch(s=>(Br(s,q,H),Pa(t,n,r)))}async function _a(a,e,t){
 let{path:r}=a.resolve(".zarray"),n=await a.store.get(r,{signal:t});if(!n)throw new q("v2 array",{path:r});return ar.increment(
 a.store,"v2"),Ra(new he(a.store,a.path,pa($e(n),e)))}async function Pa(a,e,t){let{path:r}=a.resolve(".zgroup"),n=await a.
@@ -1172,7 +1172,7 @@ t,a.path,s)):new xe(t,a.path,s)}async function Pc(a,e={}){let t="store"in a?a:ne
 t.store,"v3"),e.kind===void 0||e.kind==="array"&&r instanceof he||e.kind==="group"&&r instanceof xe)return r;let n=r instanceof
 he?"array":"group";throw new q(`${e.kind} at ${t.path}`,{path:t.path,found:n})}async function ee(a,e={}){let t="store"in
 a?a.store:a,r=ar.versionMax(t),n=r==="v2"?ee.v2:ee.v3,s=r==="v2"?ee.v3:ee.v2;return n(a,e).catch(o=>(Br(o,q,H),s(a,e)))}
-ee.v2=Tc;ee.v3=Pc;var La=[300,1e3,3e3],ka=2e4,Lc=[401,403,404,410],Fa=200,kc=429,Oc=500,Fc=2197175160,Hr=4,Nc=8,Ic=1<<28,$=class extends Error{fault;detail;constructor(e,t,r=t){
+ee.v2=Ac;ee.v3=Pc;var La=[300,1e3,3e3],ka=2e4,Lc=[401,403,404,410],Fa=200,kc=429,Oc=500,Fc=2197175160,Hr=4,Nc=8,Ic=1<<28,$=class extends Error{fault;detail;constructor(e,t,r=t){
 super(t),this.fault=e,this.detail=r}},Cc=Array.from({length:4},(a,e)=>Uint32Array.from({length:256},(t,r)=>{let n=r;for(let s=0;s<
 8*(e+1);s+=1)n=n>>>1^(n&1?Fc:0);return n}));function Uc(a){let[e,t,r,n]=Cc,s=a.length-a.length%4,o=4294967295;for(let i=0;i<
 s;i+=4)o^=a[i]|a[i+1]<<8|a[i+2]<<16|a[i+3]<<24,o=n[o&255]^r[o>>>8&255]^t[o>>>16&255]^e[o>>>24];for(let i=s;i<a.length;i+=
