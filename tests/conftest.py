@@ -42,6 +42,8 @@ sys.dont_write_bytecode = False
 # Its threads wait for each other by turning round: beside other processes, for several times as
 # long as they compute. Workers begin with it, before they load NumPy.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+# Mesa optimises shaders for longer than it draws the pictures of tests with them.
+os.environ.setdefault("GALLIVM_PERF", "nopt")
 # With it jsonschema, which Jupyter loads, builds parsers of addresses for four seconds.
 sys.modules["rfc3987_syntax"] = None  # type: ignore[assignment]
 if barred.WANTED:
