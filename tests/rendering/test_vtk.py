@@ -22,7 +22,7 @@ from flowtex.plotting.component import point_camera
 from flowtex.rendering import mesh_levels
 from flowtex.scene.options import ViewOptions
 
-SIZE = (400, 300)
+SIZE = (240, 180)
 
 
 def gyre(x: Any, y: Any) -> tuple[Any, Any]:
