@@ -166,22 +166,16 @@ def test_fields_without_a_place_on_the_earth_are_refused() -> None:
         shown(AXES["PlateCarree"], field)
 
 
-@pytest.fixture
-def stores(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, small_tiles: None) -> Path:
-    """Large stores on two maps, and a small one."""
+def test_stores_are_drawn_on_their_own_map(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, small_tiles: None
+) -> None:
     pytest.importorskip("zarr")
-    for name, projection in (("flat", None), ("robinson", "+proj=robin +lon_0=-100")):
+    for projection, own in ((None, "PlateCarree"), ("+proj=robin +lon_0=-100", "Robinson")):
+        place = tmp_path / f"{own}.zarr"
         field = FlowField.from_xarray(winds(*REGION), projection=projection)
-        flowtex.pyramid.build(field, tmp_path / f"small_{name}.zarr", progress=False)
         with monkeypatch.context() as patch:
             patch.setattr("flowtex.textures.tiles.pyramid.ROOT_NODES", 150)
-            flowtex.pyramid.build(field, tmp_path / f"{name}.zarr", progress=False)
-    return tmp_path
-
-
-def test_stores_are_drawn_on_their_own_map(stores: Path) -> None:
-    for name, own in (("flat", "PlateCarree"), ("robinson", "Robinson")):
-        place = stores / f"{name}.zarr"
+            flowtex.pyramid.build(field, place, progress=False)
         store = flowtex.pyramid.open(place)
         assert store.valid.size < 200
         for data in (store, place, str(place)):
@@ -238,9 +232,12 @@ def test_a_store_is_drawn_on_axes_that_end_at_another_meridian(
         assert (shot[y, x] == (255, 0, 255)).all(), "nothing beside the data"
 
 
-def test_small_stores_are_drawn_on_every_map(stores: Path) -> None:
+def test_small_stores_are_drawn_on_every_map(tmp_path: Path, small_tiles: None) -> None:
+    pytest.importorskip("zarr")
+    place = tmp_path / "small.zarr"
+    flowtex.pyramid.build(SOURCES["flat"](), place, progress=False)
     for name in ("polar", "PlateCarree around 180"):
-        assert_right(*shown(AXES[name], stores / "small_flat.zarr"))
+        assert_right(*shown(AXES[name], place))
 
 
 @pytest.mark.parametrize("name", ["PlateCarree", "Robinson", "usual"])
