@@ -30,8 +30,11 @@ def is_command() -> bool:
         if words[number - 1] == "-m":
             return word == PROGRAM
     # pathlib is not loaded yet.
-    names = [word.replace(os.sep, "/").rpartition("/")[2] for word in words[:2]]
-    return any(name in (PROGRAM, f"{PROGRAM}.exe") for name in names)
+    for word in words[:2]:
+        name = word.replace(os.sep, "/").rpartition("/")[2]
+        if name in (PROGRAM, f"{PROGRAM}.exe"):
+            return True
+    return False
 
 
 def note_end(code: int, frame: FrameType | None) -> None:

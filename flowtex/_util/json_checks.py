@@ -53,5 +53,6 @@ def by_name(check: Check) -> Check:
     return lambda v: (
         isinstance(v, dict)
         and len(v) <= MOST_NAMES
-        and all(is_text(name) and check(value) for name, value in v.items())
+        and all(map(is_text, v))
+        and all(map(check, v.values()))
     )

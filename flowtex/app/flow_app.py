@@ -150,8 +150,7 @@ class FlowApp:
         """Show the state of a link, and what that omits as on a new page."""
         first_name, first_choice = self._first
         name = str(state.get("file", first_name))
-        parts = {key: str(state.get(key, "")) for key in CHOICE_ARGUMENTS}
-        choice = Choice(**parts)
+        choice = _choice_of(state)
         if name == first_name and choice == Choice():
             choice = first_choice
         self.data.open(name, choice, lambda: self._restore(state))
@@ -253,11 +252,7 @@ def first_choice(library: Library, options: Mapping[str, Any]) -> tuple[str, Cho
     OSError
         Likewise, when the file of the first flow cannot be read.
     """
-    chosen = {}
-    for key in CHOICE_ARGUMENTS:
-        if options.get(key) is not None:
-            chosen[key] = str(options[key])
-    partial_choice = Choice(**chosen)
+    partial_choice = _choice_of(options)
     names = library.names
     drawable = tuple(name for name in names if name not in library.unshown)
     names = drawable or names
@@ -344,6 +339,15 @@ def serve(
         open_browser=open_browser,
         announce=announce,
     )
+
+
+def _choice_of(values: Mapping[str, Any]) -> Choice:
+    """Return the part of a file that values by name choose."""
+    chosen = {}
+    for key in CHOICE_ARGUMENTS:
+        if values.get(key) is not None:
+            chosen[key] = str(values[key])
+    return Choice(**chosen)
 
 
 def app_maker(field: Any, folder: str | Path | None, options: dict[str, Any]) -> MakeApp:

@@ -116,8 +116,7 @@ def check_picture_file(output: Path) -> None:
     from PIL import Image
 
     Image.init()
-    suffixes = {suffix for suffix, kind in Image.EXTENSION.items() if kind in Image.SAVE}
-    if output.suffix.lower() not in suffixes:
+    if Image.EXTENSION.get(output.suffix.lower()) not in Image.SAVE:
         suffix = output.suffix
         if suffix:
             fault = f"{suffix!r} is not a picture format"

@@ -107,4 +107,7 @@ def doctor() -> int:
     """Check the system that flowtex runs on, and name what is missing."""
     checks = diagnose()
     print_checks(checks)
-    return int(any(check.status == "fail" for check in checks))
+    for check in checks:
+        if check.status == "fail":
+            return 1
+    return 0

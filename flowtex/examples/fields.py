@@ -128,10 +128,10 @@ def double_gyre_at(times: Floats, points: Floats, epsilon: float) -> FlowField:
     """Return the double gyre at times (T,) and points (J, I, 2)."""
     return FlowField.from_arrays(
         points,
-        [double_gyre_velocity(points, t, epsilon=epsilon) for t in times],
+        [double_gyre_velocity(points, time, epsilon=epsilon) for time in times],
         times=times,
         periodic="",
-        scalars={"vorticity": [gyre_vorticity(points, t, epsilon) for t in times]},
+        scalars={"vorticity": [gyre_vorticity(points, time, epsilon) for time in times]},
         name="double gyre",
     )
 

@@ -55,7 +55,8 @@ class Reading(tuple[ReadingStep, ...]):
     @property
     def caption(self) -> str:
         """Text for captions; empty for none."""
-        return ", ".join(step.caption for step in self if step.caption)
+        captions = [step.caption for step in self]
+        return ", ".join(filter(None, captions))
 
     def of(self, step: str) -> tuple[str, ...]:
         """Return the sentences of a step."""

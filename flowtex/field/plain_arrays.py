@@ -154,8 +154,10 @@ def _are_components(first: Any, second: Any) -> bool:
 
 def _coordinates(points: Any) -> tuple[Any, ...]:
     """Return x and y (and z) of one argument for all positions."""
-    is_lines = isinstance(points, list) and all(np.ndim(line) == 1 for line in points)
-    if isinstance(points, tuple) or (is_lines and len(points) in COMPONENTS):
+    if isinstance(points, tuple):
+        return points
+    is_short = isinstance(points, list) and len(points) in COMPONENTS
+    if is_short and set(map(np.ndim, points)) == {1}:
         return tuple(points)
     if np.iscomplexobj(points):
         return np.real(points), np.imag(points)

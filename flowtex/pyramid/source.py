@@ -335,7 +335,7 @@ def datasets_at(place: str, options: FieldOptions) -> list[Any]:
     from flowtex._util.zarr_stores import check_arrays
     from flowtex.pyramid.objects import Objects
 
-    components = {name for name in two_names(options.vectors) if name}
+    components = set(filter(None, two_names(options.vectors)))
     if not is_remote(place):
         with errors_of(place):
             inspect_file(Path(place))

@@ -445,10 +445,10 @@ class _Writer:
         aside = self._width(numbers[0]) / 2 - shares[0] * least
         aside = max(aside, 0) + max(self._width(numbers[-1]) / 2 - (1 - shares[-1]) * least, 0)
         width = math.ceil(max(max(self._width(title), least) - aside, widest / apart))
-        places = [share * width - self._width(text) / 2 for share, text in marks]
-        ends = [x + self._width(text) for x, text in zip(places, numbers, strict=True)]
-        start = math.ceil(max(-min(places), 0))
-        end = math.ceil(max(*ends, width, self._width(title) - start))
+        widths = np.array(list(map(self._width, numbers)))
+        places = np.multiply(shares, width) - widths / 2
+        start = math.ceil(max(-places.min(), 0))
+        end = math.ceil(max((places + widths).max(), width, self._width(title) - start))
         image, draw = self._blank(start + end, 2 * self._line + high)
         self._write(draw, 0, 0, title)
         stops = np.linspace(0, len(table) - 1, width).round().astype(int)
@@ -466,7 +466,7 @@ class _Writer:
             (self._pad + start, self._pad + self._line),
             shape.resize((width, high), Image.Resampling.BOX),
         )
-        for place, text in zip(places, numbers, strict=True):
+        for place, text in zip(places.tolist(), numbers, strict=True):
             self._write(draw, round(start + place), self._line + high, text)
         return image
 

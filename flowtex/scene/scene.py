@@ -140,7 +140,7 @@ class Scene:
         else:
             image = self.image
         slices = self._sliced
-        if field is not self._given or any(is_traced_by(name) for name in changes):
+        if field is not self._given or any(map(is_traced_by, changes)):
             slices = None
         scene = Scene(field, options.make_settings(), look, image=image, slices=slices)
         scene._kept = self._kept

@@ -199,8 +199,11 @@ class TextureSet:
         mean = field.surface.in_cells(sum((along[at] for at in corners[1:]), along[corners[0]]))
         mean /= np.maximum(norm(mean), np.finfo(float).tiny)[..., None]
         # A node at rest has no direction.
-        cosines = [np.where(length[at][..., 0] > 0, dot(along[at], mean), 1) for at in corners]
-        parting = (np.min(cosines, axis=0) < AGREED) & cells
+        parting = np.zeros_like(cells)
+        for corner in corners:
+            moves = length[corner][..., 0] > 0
+            parting |= moves & (dot(along[corner], mean) < AGREED)
+        parting &= cells
         return max(float(lengths[parting].max(initial=0.0)), longest)
 
     def forget(self) -> None:

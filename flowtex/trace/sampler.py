@@ -331,7 +331,7 @@ def cap(pole: Pole, grid: NodeGrid, data: list[Floats], near: int) -> Patch:
     cells = np.ones((rows - 1, columns - 1), bool)
     return Patch(
         NodeGrid((rows, columns), grid.periodic, cells),
-        [np.ascontiguousarray(a).ravel() for a in strips],
+        [np.ravel(strip) for strip in strips],
         pole,
         first,
     )

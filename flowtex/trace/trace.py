@@ -544,9 +544,9 @@ def lyapunov_exponent(field: FlowField, horizon: float) -> Steps:
         moved, followed = _moved(field, step, horizon)
         gradient = node_gradient(field.surface, field.projection, followed)
         change = gradient.derivative(np.moveaxis(moved, -1, 0)) + gradient.directions
-        (a, b), (_, d) = (
-            [np.einsum("c...,c...->...", one, two) for two in change] for one in change
-        )
+        a = np.einsum("c...,c...->...", change[0], change[0])
+        b = np.einsum("c...,c...->...", change[0], change[1])
+        d = np.einsum("c...,c...->...", change[1], change[1])
         largest = (a + d) / 2 + np.hypot((a - d) / 2, b)
         largest[largest < LEAST_STRETCH**2] = np.nan
         with np.errstate(divide="ignore", invalid="ignore"):

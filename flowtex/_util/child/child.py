@@ -208,7 +208,8 @@ def _value(header: dict[str, Any], memory: int) -> Any:
         raise Stopped
     if kind == "MemoryError":
         raise ChildError(f"needs more than {memory / 1e9:.1f} GB of memory")
-    trace = "".join(c for c in str(header.get("trace", "")) if c.isprintable() or c == "\n")
+    lines = str(header.get("trace", "")).split("\n")
+    trace = "\n".join("".join(filter(str.isprintable, line)) for line in lines)
     raise ChildError(text, str(kind), trace)
 
 

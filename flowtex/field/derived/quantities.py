@@ -178,7 +178,7 @@ def is_velocity(name: str, unit: str = "") -> bool:
         return measures(unit, VELOCITIES)
     if not name:
         return True
-    words = [word.lower() for word in _WORDS.findall(name)]
+    words = list(map(str.lower, _WORDS.findall(name)))
     return any(map(_VELOCITY.fullmatch, words)) and not any(map(_OTHER.fullmatch, words))
 
 
@@ -225,7 +225,8 @@ def with_vector_scalar(field: Any, name: str) -> Any:
     elif name in field.parts:
         steps = field.parts[name]
     elif parts:
-        steps = np.sqrt(sum(np.square(field.parts[part]) for part in parts))
+        components = [field.parts[part] for part in parts]
+        steps = np.sqrt(sum(map(np.square, components)))
         long_name = f"|{name}|"
         if parts[0] in field.on_cells:
             on_cells = (name,)

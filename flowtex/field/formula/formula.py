@@ -290,7 +290,7 @@ class Formula:
 
 def _values(expressions: tuple[Expression, ...], values: Values) -> Floats:
     """Evaluate expressions at nodes, (J, I, number of expressions); NaN where one is undefined."""
-    shape = next(np.shape(value) for value in values.values() if np.ndim(value))
+    shape = np.broadcast_shapes(*map(np.shape, values.values()))
     result = np.empty((*shape, len(expressions)))
     with np.errstate(all="ignore"):
         for k, each in enumerate(expressions):

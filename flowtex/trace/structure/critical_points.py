@@ -277,7 +277,7 @@ def _on_grid(field: FlowField) -> list[CriticalPoint]:
     j, i = np.nonzero(_searched_cells(field))
     at_corners = _at_corners(field.index_velocity.components[0], j, i)
     cell, place = bilinear_zeros(np.stack(at_corners, axis=1))
-    low_left, low_right, high_left, high_right = (values[cell] for values in at_corners)
+    low_left, low_right, high_left, high_right = np.stack(at_corners)[:, cell]
     s, t = np.moveaxis(place[..., None], 1, 0)
     by_i = (low_right - low_left) * (1 - t) + (high_right - high_left) * t
     by_j = (high_left - low_left) * (1 - s) + (high_right - low_right) * s
@@ -602,4 +602,7 @@ def _with_strength(points: list[CriticalPoint], field: FlowField) -> list[Critic
     found[paired] = strengths(
         field, np.array(nodes, dtype=np.intp)[paired], signs[paired], steepness[paired]
     )
-    return [replace(p, strength=float(s)) for p, s in zip(points, found, strict=True)]
+    strong = []
+    for point, strength in zip(points, found.tolist(), strict=True):
+        strong.append(replace(point, strength=strength))
+    return strong
