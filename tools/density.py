@@ -17,10 +17,10 @@ from pathlib import Path
 
 #: Greatest numbers in flowtex.
 LIMITS = {
-    "comprehensions": 22.0,
-    "conditional expressions": 6.0,
+    "comprehensions": 21.5,
+    "conditional expressions": 5.8,
     "parallel assignments": 2.0,
-    "bodies over 40 lines": 20.0,
+    "bodies over 40 lines": 15.0,
     "nested comprehensions": 45.0,
     "nested conditional expressions": 3.0,
 }
