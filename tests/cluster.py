@@ -172,11 +172,10 @@ def digests(place: str | Path, some: Iterable[str] | None = None) -> dict[str, s
     Of some of them alone, where these are given.
     """
     import zarr
-    from zarr.core.buffer import default_buffer_prototype
-    from zarr.core.sync import sync
+    from zarr.buffer import default_buffer_prototype
 
     # The object storage, which is this module as well, needs nothing of the package.
-    from flowtex.pyramid.places import store_at
+    from flowtex.pyramid.places import store_at, sync
 
     store, kind = store_at(place), default_buffer_prototype()
     members = zarr.open_group(store, mode="r").members(max_depth=None)

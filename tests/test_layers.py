@@ -30,6 +30,7 @@ LOAD_SLOW = (
     "xarray",
     "pyramid.objects",
     "_util.zarr_codecs",
+    "_util.zarr_internals",
     "_util.zarr_stores",
 )
 MAX_ENTRIES = 20

@@ -8,13 +8,13 @@ import zlib
 from dataclasses import replace
 
 from zarr import AsyncArray
+from zarr.abc.buffer import Buffer
 from zarr.abc.codec import Codec
 from zarr.abc.store import Store
 from zarr.codecs import BloscCodec, GzipCodec, ShardingCodec
-from zarr.core.array_spec import ArraySpec
-from zarr.core.buffer import Buffer
-from zarr.core.metadata import ArrayV3Metadata
 from zarr.storage import StorePath
+
+from flowtex._util.zarr_internals import ArraySpec, ArrayV3Metadata
 
 #: Parameters of the Blosc codec.
 BLOSC_NAMES = ("typesize", "cname", "clevel", "shuffle", "blocksize")

@@ -283,6 +283,8 @@ def _prepared(
 ) -> tuple[Group, dict[str, Any], bool]:
     """Return the group of a store, its description, and whether it is new."""
     zarr = import_extra("zarr", "store")
+    from zarr.buffer import default_buffer_prototype
+
     store = store_at(place, read_only=False)
     if fresh:
         _remove(store)
@@ -303,7 +305,7 @@ def _prepared(
             )
         about = {**stored, "complete": False}
     metadata = described(about).store
-    kind = zarr.core.buffer.default_buffer_prototype()
+    kind = default_buffer_prototype()
     # Those of the group come first: they show that the place is taken.
     for name in sorted(listed(metadata.list_prefix), key=lambda name: name.count("/")):
         document: Any = sync(metadata.get(name, kind))

@@ -47,7 +47,8 @@ from flowtex.textures.tiles.pyramid import TileKey, level_shape
 
 if TYPE_CHECKING:
     from zarr import AsyncArray
-    from zarr.core.metadata import ArrayV3Metadata
+
+    from flowtex._util.zarr_internals import ArrayV3Metadata
 
 T = TypeVar("T")
 Index = tuple[int | slice, ...]
@@ -188,8 +189,10 @@ class Levels:
             When the metadata are missing, cannot be read or differ.
         """
         zarr = import_extra("zarr", "store")
+        from zarr.buffer import default_buffer_prototype
+
         name = f"{node.path}/{DOCUMENT}"
-        kind = zarr.core.buffer.default_buffer_prototype()
+        kind = default_buffer_prototype()
         try:
             stored = sync(self._objects.get(name, kind))
         except FieldError as error:  # a document that is refused

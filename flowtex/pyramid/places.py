@@ -209,7 +209,10 @@ def store_at(place: str | Path, *, read_only: bool = True) -> Store:
 
 def sync(coroutine: Coroutine[Any, Any, T]) -> T:
     """Run a coroutine of a store of Zarr's, and return its result."""
-    result: T = import_extra("zarr.core.sync", "store").sync(coroutine)
+    import_extra("zarr", "store")
+    from flowtex._util.zarr_internals import sync as wait_for
+
+    result: T = wait_for(coroutine)
     return result
 
 
@@ -354,7 +357,7 @@ def building(place: str) -> Iterator[None]:
     PyramidError
         When another build that still runs, or one on another machine, has marked it.
     """
-    from zarr.core.buffer import default_buffer_prototype
+    from zarr.buffer import default_buffer_prototype
 
     store = store_at(place, read_only=False)
     kind = default_buffer_prototype()
