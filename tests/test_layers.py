@@ -29,6 +29,7 @@ LOAD_SLOW = (
     "__main__",
     "xarray",
     "pyramid.objects",
+    "pyramid.unlisted",
     "_util.zarr_codecs",
     "_util.zarr_internals",
     "_util.zarr_stores",

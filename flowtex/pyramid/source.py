@@ -334,13 +334,18 @@ def datasets_at(place: str, options: FieldOptions) -> list[Any]:
     import_extra("zarr", "xarray")
     from flowtex._util.zarr_stores import check_arrays
     from flowtex.pyramid.objects import Objects
+    from flowtex.pyramid.unlisted import UnlistedStore
 
     components = set(filter(None, two_names(options.vectors)))
+    unlisted: UnlistedStore | None = None
     if not is_remote(place):
         with errors_of(place):
             inspect_file(Path(place))
     try:
-        store = Objects(store_at(place), sparse=True)
+        files = store_at(place)
+        if is_remote(place):
+            files = unlisted = UnlistedStore(files, sorted(components))
+        store = Objects(files, sparse=True)
         if is_remote(place):
             check_arrays(store)
         with warnings.catch_warnings():
@@ -363,6 +368,12 @@ def datasets_at(place: str, options: FieldOptions) -> list[Any]:
     for d in groups.values():
         if (components and components <= {*d}) or find_pairs([d]):
             levels.append(d)
+    if not levels and unlisted is not None and not unlisted.was_listed:
+        raise PyramidError(
+            f"no velocity was found in {place}: its server lists no files, and the store has no "
+            "consolidated metadata. Name the components, such as --u uo --v vo or u='uo', v='vo'; "
+            "or consolidate the metadata with zarr.consolidate_metadata"
+        )
     if not levels:
         raise PyramidError(
             f"{place} contains no pyramid, and no velocity; expected two variables such as u and "

@@ -124,6 +124,37 @@ def test_a_store_is_built_from_what_lies_on_the_web(
         assert np.allclose(some.velocity[0], others.velocity[0], atol=1e-3)
 
 
+@pytest.mark.parametrize("zarr_format", [2, 3])
+def test_store_on_a_server_without_a_list(tmp_path: Path, zarr_format: Any) -> None:
+    """Neither the server nor consolidated metadata name the arrays."""
+    small = dataset().isel(x=slice(20), y=slice(10))
+    options: dict[str, Any] = {"consolidated": False, "zarr_format": zarr_format}
+    small.to_zarr(tmp_path / "a.zarr", **options)
+    small.rename(u="east", v="north").to_zarr(tmp_path / "b.zarr", **options)
+    known = FlowField.from_xarray(small)
+    with range_server(tmp_path) as server:
+        fields = [
+            open_store(f"{server.address}a.zarr"),
+            open_store(f"{server.address}b.zarr", u="east", v="north"),
+        ]
+        for field in fields:
+            np.testing.assert_allclose(field.points, known.points)
+            np.testing.assert_allclose(field.velocity[0], known.velocity[0])
+        with pytest.raises(FieldError, match=r"its server lists no files.*Name the components"):
+            open_store(f"{server.address}b.zarr")
+
+
+def test_levels_on_a_server_without_a_list(tmp_path: Path) -> None:
+    place = tmp_path / "flow.zarr"
+    for n, factor in enumerate((1, 2, 4)):
+        one = dataset().coarsen(x=factor, y=factor).mean()
+        one.to_zarr(place, group=str(n), consolidated=False, zarr_format=3)
+    zarr.open_group(place, mode="r+").attrs["multiscales"] = TOLD["ndpyramid"]
+    with range_server(tmp_path) as server, pytest.warns(Notice, match="drawn with 1,536 of its"):
+        field = open_store(f"{server.address}flow.zarr")
+    assert field.shape == (ROWS // 2, COLUMNS // 2)
+
+
 def test_of_one_large_level_every_nth_node_is_drawn(tmp_path: Path) -> None:
     dataset(earth=True).to_zarr(tmp_path / "a.zarr", consolidated=False, zarr_format=3)
     with pytest.warns(Notice, match="drawn with 1,536 of its 6,144 nodes"):
