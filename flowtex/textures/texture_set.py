@@ -53,7 +53,7 @@ MOST_LAGS = 32  #: Most slices on each side, by the room in a shader.
 UNCERTAIN_LAYER = 3  #: The layer whose fourth channel is the uncertainty of the direction.
 HALF_MAX = 65504.0  #: Greatest number in half precision, in which texels are stored.
 SLOPE_ERROR = 2.0**-12  #: Relative error that is allowed in a slope: half of the rounding error.
-EDGE_CELLS = 4.0  #: Cells that a path goes in a triangle at a sharp edge for one elsewhere.
+EDGE_CELLS = 2.0  #: Cells that a path goes in a triangle at a sharp edge for one elsewhere.
 AGREED = 0.99  #: Length of the mean velocity over the mean length where nodes agree.
 
 

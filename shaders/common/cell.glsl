@@ -91,6 +91,8 @@ bool flowtexEnterCell(vec2 coordinate, float reach)
   FLOWTEX_VELOCITY velocity;
   FLOWTEX_RATE rate;
   vec2 lengths = vec2(0.0);
+  vec3 together = vec3(0.0); // sum of the nodes' velocities,
+  float alone = 0.0;         // and of their lengths
   float off = 0.0;
   for (int n = 0; n < FLOWTEX_CELL_NODES; ++n)
   {
@@ -121,6 +123,8 @@ bool flowtexEnterCell(vec2 coordinate, float reach)
     float speed = length(velocity[n]);
 #endif
     lengths += here[n] * vec2(speed, cells);
+    together += velocity[n];
+    alone += speed;
   }
   lengths.x = max(lengths.x, FLOWTEX_LEAST_SPEED);
 #ifdef FLOWTEX_TRIANGLES
@@ -131,7 +135,8 @@ bool flowtexEnterCell(vec2 coordinate, float reach)
 #endif
   flowtexCell.velocity = velocity * about;
   flowtexCell.rate = rate * about;
-  float agreed = length(flowtexCell.velocity[0]);
+  // Also of all nodes alike: paths part between two nodes that agree beside a third that does not.
+  float agreed = min(length(flowtexCell.velocity[0]), length(together) / max(alone, FLOWTEX_LEAST_SPEED));
 #ifdef FLOWTEX_TRIANGLES
   lengths.y = min(lengths.y, FLOWTEX_SLIVER_CELLS * lengths.x * flowtexSliver());
 #endif

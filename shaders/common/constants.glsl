@@ -26,14 +26,14 @@ const int FLOWTEX_SHARED_TERMS = 24; // neighbours of a sample that may share it
 // mean velocity over the mean of their lengths, and of the cells that a side of the path goes over.
 const float FLOWTEX_PARTING = 0.95;
 const float FLOWTEX_AGREED = 0.99;
-const float FLOWTEX_NEAR_CELLS = 2.0;
-const float FLOWTEX_FAR_CELLS = 4.0;
+const float FLOWTEX_NEAR_CELLS = 4.0;
+const float FLOWTEX_FAR_CELLS = 8.0;
 const float FLOWTEX_SLIVER_CELLS = 2.0; // that a path as long as a triangle counts as, at most, where it crosses thin ones
 // At a sharp edge slices leave the surface: sines of the angles of nodes' velocities and paths to a
 // triangle between which paths in it take their place, over so many times as many cells.
 const float FLOWTEX_ALONG_PLANE = 0.3;
 const float FLOWTEX_OFF_PLANE = 0.5;
-const float FLOWTEX_EDGE_CELLS = 4.0;
+const float FLOWTEX_EDGE_CELLS = 2.0;
 
 // Levels of detail.
 const float FLOWTEX_LEAST_SQUARE = 1e-30; // square of the longest side of a footprint; no less, as graphics cards take numbers below 1.2e-38 as zero

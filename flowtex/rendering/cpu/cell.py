@@ -23,18 +23,24 @@ class CellPath:
         else:
             factors, nodes = _square(slices, coordinate, values)
         coefficients = np.zeros((len(reach), 5, len(factors)))
-        speed, rate, sine_off = np.zeros((3, len(reach)))
+        speed, rate, sine_off, alone = np.zeros((4, len(reach)))
+        together = np.zeros((len(reach), 3))
         for weights, (in_space, in_cells, lengths, sine) in zip(factors, nodes, strict=True):
             coefficients += (
                 np.concatenate([in_space, in_cells], axis=1)[:, :, None] * weights.T[:, None]
             )
             speed += weights[0] * lengths[0]
             rate += weights[0] * lengths[1]
+            together += in_space
+            alone += lengths[0]
             sine_off = np.maximum(sine_off, sine)
         speed = np.maximum(speed, const.LEAST_SPEED)
         if isinstance(coordinate, TrianglePlaces):
             rate = np.minimum(rate, const.SLIVER_CELLS * speed * _sliver(coordinate))
         agreed = np.linalg.norm(coefficients[:, :3, 0], axis=1) / speed
+        # Also of all nodes alike: paths part between two that agree beside a third that does not.
+        alike = np.linalg.norm(together, axis=1) / np.maximum(alone, const.LEAST_SPEED)
+        agreed = np.minimum(agreed, alike)
         edge = smoothstep(const.ALONG_PLANE, const.OFF_PLANE, sine_off)
         cells = reach * rate / speed / (1 + (const.EDGE_CELLS - 1) * edge)
         far = smoothstep(const.NEAR_CELLS, const.FAR_CELLS, cells)
