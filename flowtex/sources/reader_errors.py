@@ -29,6 +29,8 @@ if TYPE_CHECKING:
 #: in a process, and two threads that replace them at the same time corrupt the heap. A file may be
 #: opened while another is read, so the thread that holds it may take it again.
 _VTK_GLOBALS = ProcessLock()
+#: Errors with which readers fail where a file is broken.
+BROKEN = (AttributeError, IndexError, TypeError, EOFError, ArithmeticError, AssertionError)
 #: Environment variable that decides whether HDF5 locks files.
 LOCKING = "HDF5_USE_FILE_LOCKING"
 
@@ -52,12 +54,14 @@ def errors_of_file(path: str | Path) -> Iterator[None]:
             cause = error
         except MemoryError:
             cause = RuntimeError("its data do not fit into memory")
-        except (AttributeError, IndexError, TypeError, EOFError, ArithmeticError) as error:
+        except BROKEN as error:
             # Readers fail so where parts of a broken file are missing, or sizes are absurd.
-            cause = RuntimeError(f"its content is invalid ({error})")
+            reason = str(error) or type(error).__name__
+            cause = RuntimeError(f"its content is invalid ({reason}); write or copy it again")
         except Exception as error:
-            # Errors of ecCodes have no class in common with others.
-            if not type(error).__module__.startswith("gribapi"):
+            # Errors of readers, such as ecCodes, may have no class in common with others.
+            library = type(error).__module__.partition(".")[0]
+            if library in ("builtins", "flowtex"):
                 raise
             cause = error
     if catcher and catcher.error_events:

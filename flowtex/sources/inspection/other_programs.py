@@ -34,6 +34,18 @@ LINES = {
     ".xlsx": ("a spreadsheet", 'flowtex.show(pandas.read_excel("{name}"))'),
     ".shp": ("a shapefile", 'flowtex.show(geopandas.read_file("{name}"))'),
     ".gpkg": ("a GeoPackage", 'flowtex.show(geopandas.read_file("{name}"))'),
+    ".sim": (
+        "a simulation of Simcenter STAR-CCM+",
+        'File, Export in STAR-CCM+ with the type EnSight Gold, and flowtex.show("flow.case")',
+    ),
+    ".mph": (
+        "a model of COMSOL",
+        'Results, Export, Data in COMSOL with the file type VTK, and flowtex.show("flow.vtu")',
+    ),
+    ".plt": (
+        "a binary file of Tecplot",
+        'File, Save Data in ParaView with the ending .vtm, and flowtex.show("flow.vtm")',
+    ),
     ".im7": (
         "an image of DaVis",
         'export vectors as text in DaVis, and flowtex.show("B00001.txt")',
@@ -46,7 +58,13 @@ LINES = {
 #: Endings of images.
 IMAGES = (".png", ".jpg", ".jpeg", ".bmp", ".gif")
 #: Endings of the same formats.
-ALIKE = {".omf": ".ovf", ".arrow": ".feather", ".xls": ".xlsx"}
+ALIKE = {
+    ".omf": ".ovf",
+    ".arrow": ".feather",
+    ".xls": ".xlsx",
+    ".ccm": ".sim",
+    ".szplt": ".plt",
+}
 #: Endings of HDF5.
 HDF5 = (".h5", ".hdf5", ".hdf", ".he5")
 #: Groups of HDF5 that PyVista's readers know: VTK, and Common Fluids Format of Fluent.
