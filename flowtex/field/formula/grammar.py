@@ -12,7 +12,7 @@ import ast
 import re
 import sys
 import unicodedata
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Callable, Collection, Mapping, Sequence
 from functools import reduce
 from typing import Any, NoReturn
 
@@ -82,6 +82,61 @@ def evaluate(tree: Tree, values: Values) -> Any:
     if count:
         return function(*arguments)
     return reduce(function, arguments)
+
+
+class Program:
+    """The steps that compute the values of trees, of which equal parts are computed once."""
+
+    def __init__(self, trees: Sequence[Tree]) -> None:
+        #: The leaves, and ``None`` for the values of operations.
+        self._leaves: list[float | str | None] = []
+        #: The places of an operation and of its arguments, with its function.
+        self._steps: list[tuple[int, Any, tuple[int, ...]]] = []
+        self._known: dict[tuple[str | int, ...], int] = {}
+        self._visited: dict[int, int] = {}
+        self._results = [self._place(tree) for tree in trees]
+        self._names = [
+            (place, leaf) for place, leaf in enumerate(self._leaves) if isinstance(leaf, str)
+        ]
+        self._visited.clear()
+
+    def __call__(self, values: Values) -> list[Any]:
+        """Return what :func:`evaluate` returns for each tree."""
+        found: list[Any] = self._leaves.copy()
+        for place, name in self._names:
+            found[place] = values[name]
+        for place, function, parts in self._steps:
+            found[place] = function(*[found[part] for part in parts])
+        return [found[place] for place in self._results]
+
+    def _place(self, tree: Tree) -> int:
+        """Return where the value of a tree is."""
+        if not isinstance(tree, tuple):
+            # Zeros with different signs are equal, but their texts are not.
+            return self._new_or_known((repr(tree),), tree)
+        if id(tree) not in self._visited:
+            self._visited[id(tree)] = self._place_of_operation(*tree)
+        return self._visited[id(tree)]
+
+    def _place_of_operation(self, name: str, *parts: Tree) -> int:
+        function, count = OPERATIONS[name]
+        places = [self._place(part) for part in parts]
+        if count:
+            return self._new_or_known((name, *places), None, function)
+        first = places[0]
+        for other in places[1:]:
+            first = self._new_or_known((name, first, other), None, function)
+        return first
+
+    def _new_or_known(
+        self, key: tuple[Any, ...], leaf: float | str | None, function: Any = None
+    ) -> int:
+        if key not in self._known:
+            self._known[key] = place = len(self._leaves)
+            self._leaves.append(leaf)
+            if function is not None:
+                self._steps.append((place, function, key[1:]))
+        return self._known[key]
 
 
 def size(tree: Tree) -> int:

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Sequence
 
 import numpy as np
 
 from flowtex._util.array_types import Floats
 from flowtex.field.formula.formula import COMPONENTS, Formula, gradient_trees, rate_trees
-from flowtex.field.formula.grammar import Tree, evaluate
+from flowtex.field.formula.grammar import Program
 
 FUNCTION_SHARE = 1e-4  #: Step of finite differences for functions, as a share of a range.
 #: Steps and weights of these finite differences.
@@ -29,7 +28,9 @@ class Rates:
         self.ends = np.array(list(formula.ranges.values()))
         self._values = formula.parameter_values | {"t": time}
         self.trees, self._tangents = rate_trees(formula)
-        self._gradient = gradient_trees(formula)
+        self._rates = Program(self.trees)
+        self._gradient = Program(gradient_trees(formula))
+        self._sides = Program(list(itertools.chain.from_iterable(self._tangents)))
 
     @property
     def is_known(self) -> bool:
@@ -41,7 +42,7 @@ class Rates:
         if not self.trees:
             x, y = places.T
             return self._formula.velocity(x, y, self._time)
-        return self._of(self.trees, places)
+        return self._of(self._rates, places)
 
     def gradient(self, places: Floats) -> Floats:
         """Return the change of rate k along coordinate m, (N, 2, 2)."""
@@ -63,8 +64,7 @@ class Rates:
         """Return the derivatives of the position along the coordinates, (N, 2, 3)."""
         if not self._tangents:
             return np.broadcast_to(np.eye(2, 3), (len(places), 2, 3))
-        trees = list(itertools.chain.from_iterable(self._tangents))
-        return self._of(trees, places).reshape(-1, 2, 3)
+        return self._of(self._sides, places).reshape(-1, 2, 3)
 
     def area(self, places: Floats) -> Floats:
         """Return the area of a unit of both coordinates, (N,)."""
@@ -79,11 +79,12 @@ class Rates:
         metric = np.einsum("nkc,nmc->nkm", tangents, tangents)
         return np.asarray(np.einsum("nkm,nm...->nk...", np.linalg.pinv(metric), values))
 
-    def _of(self, trees: Sequence[Tree], places: Floats) -> Floats:
+    def _of(self, program: Program, places: Floats) -> Floats:
         """Return the values of trees, (N, number of trees)."""
         values = self._values | dict(zip(self._formula.ranges, places.T, strict=True))
-        result = np.empty((len(places), len(trees)))
         with np.errstate(all="ignore"):
-            for k, tree in enumerate(trees):
-                result[:, k] = evaluate(tree, values)
+            columns = program(values)
+        result = np.empty((len(places), len(columns)))
+        for k, column in enumerate(columns):
+            result[:, k] = column
         return result

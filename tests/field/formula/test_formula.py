@@ -18,7 +18,7 @@ import flowtex
 from flowtex import FieldError
 from flowtex.field.formula.derivatives import derivative
 from flowtex.field.formula.formula import MOST_SIZE
-from flowtex.field.formula.grammar import FUNCTIONS, OPERATIONS, evaluate, parse, size
+from flowtex.field.formula.grammar import FUNCTIONS, OPERATIONS, Program, evaluate, parse, size
 from flowtex.field.formula.make import KNOWN, is_line, line_field, with_parameter
 from flowtex.rendering.webgl.velocity import client_formula
 from flowtex.scene.scene import Scene
@@ -51,6 +51,24 @@ VALUES = {"x": np.linspace(-2.0, 2.0, 9), "y": np.linspace(0.3, 1.7, 9), "b": 0.
 def test_a_formula_has_the_values_of_python(text: str, expected: Any) -> None:
     tree = parse(text, VALUES)
     assert_allclose(evaluate(tree, VALUES), expected(**VALUES), rtol=1e-14)
+
+
+def test_equal_parts_of_formulas_are_computed_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    texts = ("hypot(x, y)*(x + y + 1) - 0.0", "max(hypot(x, y), x + y, b)/-0.0")
+    trees = [parse(text, ("x", "y", "b")) for text in texts]
+    calls = []
+
+    def hypot(a: Any, b: Any) -> Any:
+        calls.append((a, b))
+        return np.hypot(a, b)
+
+    monkeypatch.setitem(OPERATIONS, "hypot", (hypot, 2))
+    program = Program(trees)
+    with np.errstate(divide="ignore"):
+        found = program(VALUES)
+        assert len(calls) == 1
+        for value, tree in zip(found, trees, strict=True):
+            np.testing.assert_array_equal(value, evaluate(tree, VALUES))
 
 
 @pytest.mark.parametrize(
