@@ -51,8 +51,10 @@ def raise_faults(faults: Sequence[str]) -> None:
         return
     if len(faults) == 1:
         raise FieldError(faults[0])
-    listed = "\n".join(f"  {n}. {fault}" for n, fault in enumerate(faults, start=1))
-    raise FieldError(f"{len(faults)} things are wrong:\n{listed}")
+    lines = [f"{len(faults)} things are wrong:"]
+    for number, fault in enumerate(faults, start=1):
+        lines.append(f"  {number}. {fault}")
+    raise FieldError("\n".join(lines))
 
 
 class Notice(UserWarning):

@@ -410,7 +410,11 @@ def setting(name: str) -> Setting:
 
 def named_values(values: Mapping[str, Any]) -> str:
     """Return values of settings as people read them, such as ``"Samples: 10"``."""
-    return ", ".join(f"{TABLE[name].label}: {TABLE[name].format(v)}" for name, v in values.items())
+    texts = []
+    for name, value in values.items():
+        row = TABLE[name]
+        texts.append(f"{row.label}: {row.format(value)}")
+    return ", ".join(texts)
 
 
 _KINDS: dict[str, type] = {"int": int, "float": float, "bool": bool, "str": str}

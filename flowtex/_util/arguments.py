@@ -90,6 +90,11 @@ def checked_size(size: Any, low: int = 1) -> tuple[int, int]:
     return int(sides[0]), int(sides[1])
 
 
+def are_paths(items: Iterable[object]) -> bool:
+    """Return whether all items are paths, or texts."""
+    return all(isinstance(item, (str, Path)) for item in items)
+
+
 def checked_path(name: str, path: Any) -> Path:
     """Return a path as one of Python's."""
     if not isinstance(path, (str, os.PathLike)) or "\0" in str(path):

@@ -111,8 +111,7 @@ class FlowApp:
         self.server = server or get_server(f"flowtex-{id(self)}")
         self.server.client_type = "vue3"
         self.state = PageState(self.server)
-        reading = {name: options.pop(name, None) for name in FIELD_ARGUMENTS}
-        library = Library.of(flow, **reading)
+        library = Library.of(flow, **_taken(options, FIELD_ARGUMENTS))
         name, choice = first_choice(library, options)
         for argument in CHOICE_ARGUMENTS:
             options.pop(argument, None)
@@ -341,6 +340,11 @@ def serve(
     )
 
 
+def _taken(options: dict[str, Any], names: Iterable[str]) -> dict[str, Any]:
+    """Return some of the options, ``None`` where one is not given, and remove them."""
+    return {name: options.pop(name, None) for name in names}
+
+
 def _choice_of(values: Mapping[str, Any]) -> Choice:
     """Return the part of a file that values by name choose."""
     chosen = {}
@@ -379,8 +383,7 @@ def app_maker(field: Any, folder: str | Path | None, options: dict[str, Any]) ->
         make_app: MakeApp = field
         return make_app
     # All pages share one library, with its open files and traces.
-    reading = {name: options.pop(name, None) for name in FIELD_ARGUMENTS}
-    library = Library.of(field, folder=folder, **reading)
+    library = Library.of(field, folder=folder, **_taken(options, FIELD_ARGUMENTS))
     return lambda server: FlowApp(library, server=server, **options)
 
 

@@ -91,9 +91,12 @@ def _setting_flag(row: Setting) -> Any:
 
 def _flags(name: str, text: str, flags: dict[str, Any]) -> Any:
     """Return a class whose fields are flags of the command line."""
+    members = []
+    for flag, kind in flags.items():
+        members.append((flag, kind, data_field(default=None)))
     return make_dataclass(
         name,
-        [(flag, kind, data_field(default=None)) for flag, kind in flags.items()],
+        members,
         kw_only=True,
         # Annotations are resolved in the module that the class names.
         namespace={"__module__": __name__, "__doc__": text},

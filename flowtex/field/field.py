@@ -616,18 +616,17 @@ class FlowField(FieldConstructors, FieldQuantities):
         A periodic axis keeps its first and its last line.
         """
         at = np.ix_(rows, columns)
-        of_steps = (slice(None), *at)
         has_position = None
         if self.has_position is not None:
             has_position = self.has_position[at]
         return replace(
             self,
             points=self.points[at],
-            velocity=self.velocity[of_steps],
+            velocity=self.velocity[:, at[0], at[1]],
             valid=self.valid[at],
             has_position=has_position,
-            scalars={name: steps[of_steps] for name, steps in self.scalars.items()},
-            parts={name: steps[of_steps] for name, steps in self.parts.items()},
+            scalars=_at_nodes(self.scalars, at),
+            parts=_at_nodes(self.parts, at),
             formula=None,  # as its nodes are evenly spaced
         )
 
@@ -643,6 +642,11 @@ class FlowField(FieldConstructors, FieldQuantities):
             facts.append("sign-free")
         facts.append(f"{int((~self.valid).sum())} blanked")
         return f"FlowField({self.name or 'unnamed'}: {', '.join(facts)})"
+
+
+def _at_nodes(scalars: Mapping[str, Any], at: tuple[Any, ...]) -> dict[str, Any]:
+    """Return the values of scalars at some nodes, which are an index of rows and columns."""
+    return {name: steps[:, at[0], at[1]] for name, steps in scalars.items()}
 
 
 def _at_steps(scalars: Mapping[str, Any], index: Any) -> dict[str, Any]:

@@ -54,8 +54,11 @@ class NodeSurface:
 
     def _at_all_corners(self, nodes: Bools) -> Bools:
         """Return the cells at whose corners all of some nodes (J, I) are."""
-        corners = [nodes[at] for at in self.cell_corners]
-        return np.asarray(np.logical_and.reduce(corners))
+        first, *others = self.cell_corners
+        cells = np.array(nodes[first])
+        for corner in others:
+            cells &= nodes[corner]
+        return cells
 
     @cached_property
     def sharp(self) -> Bools:

@@ -192,8 +192,8 @@ def _nodes(positions: Sequence[AnyArray]) -> tuple[Any, tuple[int, ...] | None]:
     if len(positions) == 1:
         return positions[0], positions[0].shape[:-1]
     # Files of MATLAB have lines as (1, N) or (N, 1).
-    is_lines = all(1 in part.shape[-2:] or part.ndim == 1 for part in positions)
-    if len(positions) == 2 and is_lines:
+    is_line = [1 in part.shape[-2:] or part.ndim == 1 for part in positions]
+    if len(positions) == 2 and all(is_line):
         x = positions[0].ravel()
         y = positions[1].ravel()
         return (x, y), (len(y), len(x))

@@ -174,7 +174,7 @@ def moves(steps: Steps) -> bool:
         numbers = typical_steps(count)
     else:
         numbers = range(count)
-    return any(np.nan_to_num(steps[n]).any() for n in numbers)
+    return any(np.nan_to_num(steps[number]).any() for number in numbers)
 
 
 def first_moving(steps: Steps) -> int:

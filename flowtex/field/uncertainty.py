@@ -121,7 +121,9 @@ def _at_nodes(field: Any, steps: Steps) -> Steps:
 def _corner_means(step: Floats) -> Floats:
     """Return means at the nodes of values at cells, (J, I), each at its first node."""
     cells = np.pad(step[:-1, :-1], 1, constant_values=np.nan)
-    around = np.stack([cells[j : j + len(step), i : i + step.shape[1]] for j, i in CORNERS])
+    around = []
+    for j, i in CORNERS:
+        around.append(cells[j : j + len(step), i : i + step.shape[1]])
     return np.asarray(np.ma.masked_invalid(around).mean(axis=0).filled(np.nan))
 
 

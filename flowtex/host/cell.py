@@ -129,10 +129,14 @@ def _display_still(shown: Any, name: str, *, update: bool = False) -> None:
     """Display a still picture of widgets below a cell, or replace the one of this name."""
     from IPython.display import display
 
-    keys = " ".join(widget._key for widget in _displayed_in(shown) if widget.comm is not None)
+    keys = []
+    for widget in _displayed_in(shown):
+        if widget.comm is not None:
+            keys.append(widget._key)
     data = {"text/plain": repr(shown), "text/html": ""}
     if keys:
-        pictures = f'<div class="flowtex-still" data-flowtex="{keys}">{_pictures(shown)}</div>'
+        attributes = f'class="flowtex-still" data-flowtex="{" ".join(keys)}"'
+        pictures = f"<div {attributes}>{_pictures(shown)}</div>"
         data["text/html"] = f"<style>{STYLE}</style>{pictures}"
         if isinstance(shown, Displayed) and (picture := shown._encoded_picture()):
             data |= [picture]

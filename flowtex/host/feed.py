@@ -313,8 +313,11 @@ class Feed:
         """Send arrays in one message."""
         if self._closed or not parts:
             return
-        infos = [info for info, _ in parts]
-        buffers = [part_buffer(array) for _, array in parts]
+        infos = []
+        buffers = []
+        for info, array in parts:
+            infos.append(info)
+            buffers.append(part_buffer(array))
         message = {"kind": "parts", "generation": self.source.generation, "parts": infos}
         self._send(message, buffers)
 

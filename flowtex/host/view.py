@@ -472,7 +472,7 @@ def client_module() -> str:
 
 def client_script(*, with_store: bool = False) -> str:
     """Return the client as a script that defines ``flowtex``, and ``flowtexStore`` to read one."""
-    names = ["core.js"]
+    script = asset("core.js").read_text("utf-8")
     if with_store:
-        names.append("store.js")
-    return "".join(asset(name).read_text("utf-8") for name in names)
+        script += asset("store.js").read_text("utf-8")
+    return script

@@ -166,7 +166,7 @@ def _write_labels(bar: vtkScalarBarActor, options: Mapping[str, Any]) -> list[st
     """Give a bar round labels, or as many as users want; return them."""
     table = bar.GetLookupTable()
     # PyVista's ``annotations`` fails where VTK has added texts at the ends.
-    marks = [table.GetAnnotation(n) for n in range(table.GetNumberOfAnnotatedValues())]
+    marks = list(map(table.GetAnnotation, range(table.GetNumberOfAnnotatedValues())))
     number = options.get("n_labels")
     if number is None:
         values = _round_labels(*table.GetRange(), log_scale=table.UsingLogScale())

@@ -159,7 +159,7 @@ def about_source(source: NodeSource, parameter: str, lines: str) -> dict[str, An
         "projection": field.projection and field.projection.written,
         "nodes": list(source.shape),
         "periodic": list(field.periodic),
-        "periods": [period.tolist() for period in periods_of(source)],
+        "periods": np.stack(periods_of(source)).tolist(),
         "depth": depth,
         "tile_cells": TILE_CELLS,
         "parameter": parameter,

@@ -6,7 +6,7 @@ import asyncio
 import itertools
 import json
 import math
-from collections.abc import Callable, Coroutine
+from collections.abc import Callable, Coroutine, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
@@ -161,7 +161,7 @@ class Levels:
         # The digests of later steps do not contain positions.
         positions = velocity
         if step == 0:
-            positions = self._points([values[name] for name in self._places()], rows, columns)
+            positions = self._points(values, rows, columns)
         nodes = Nodes(
             positions,
             values.get("valid", velocity).astype(bool),
@@ -246,8 +246,10 @@ class Levels:
         else:
             tile = [level, *at]
         prefix = "tile/" + "/".join(map(str, tile)) + "/"
-        belongs = [name.startswith(prefix) for name in names]
-        if owner != self.about["fingerprint"] or not all(belongs):
+        is_ours = owner == self.about["fingerprint"]
+        for part_name in names:
+            is_ours &= part_name.startswith(prefix)
+        if not is_ours:
             raise DamageError(f"{name} of {self.place} belongs to another tile; build it again")
         for first in range(FILE_CHUNK, size, FILE_CHUNK):
             self._read(_Piece(array, (*at, slice(first, first + FILE_CHUNK)), name))
@@ -256,9 +258,9 @@ class Levels:
     def positions(self, level: int, rows: Indices, columns: Indices) -> tuple[Floats, Bools]:
         """Return where nodes are, (J, I, 3), and which of them are valid, (J, I)."""
         names = [*self._places(), "valid"]
-        pieces = [self._nodal(level, name, rows, columns) for name in names]
-        *places, valid = self._read(*pieces)
-        return self._points(places, rows, columns), valid.astype(bool)
+        pieces = self._nodal_pieces(level, names, rows, columns)
+        arrays = dict(zip(names, self._read(*pieces), strict=True))
+        return self._points(arrays, rows, columns), arrays["valid"].astype(bool)
 
     def nodes(
         self, level: int, rows: Indices, columns: Indices, *, velocities: bool = True
@@ -272,7 +274,7 @@ class Levels:
         if velocities:
             series["velocity"] = len(about["times"])
         nbytes = len(rows) * len(columns) * NODE_BYTES
-        pieces = [self._nodal(level, name, rows, columns) for name in names]
+        pieces = self._nodal_pieces(level, names, rows, columns)
         late = set()
         for name, count in series.items():
             if count > 1 and (about["late"] or count * nbytes > KEPT_BYTES):
@@ -296,7 +298,7 @@ class Levels:
         if about["has_position"]:
             has_position = arrays["has_position"].astype(bool)
         return Nodes(
-            self._points([arrays[name] for name in self._places()], rows, columns),
+            self._points(arrays, rows, columns),
             arrays["valid"].astype(bool),
             velocity,
             {name.removeprefix(SCALARS): values for name, values in steps.items()},
@@ -333,13 +335,19 @@ class Levels:
             names.append("has_position")
         return names
 
-    def _points(self, places: list[AnyArray], rows: Indices, columns: Indices) -> Floats:
-        """Return positions (J, I, 3) of nodes from the arrays of their places."""
+    def _points(self, arrays: Mapping[str, AnyArray], rows: Indices, columns: Indices) -> Floats:
+        """Return positions (J, I, 3) of nodes from the arrays by name of :meth:`_places`."""
         if not self.about["axes"]:
-            return _in_space(places[0], self.about["height"])
-        x, y = places
-        grid = np.broadcast_arrays(x[columns], y[rows][:, None], self.about["height"])
-        return np.stack(grid, axis=-1)
+            return _in_space(arrays["points"], self.about["height"])
+        x = arrays["x"][columns]
+        y = arrays["y"][rows][:, None]
+        return np.stack(np.broadcast_arrays(x, y, self.about["height"]), axis=-1)
+
+    def _nodal_pieces(
+        self, level: int, names: list[str], rows: Indices, columns: Indices
+    ) -> list[_Piece]:
+        """Return the pieces of arrays without time at some rows and columns."""
+        return [self._nodal(level, name, rows, columns) for name in names]
 
     def _nodal(
         self, level: int, name: str, rows: Indices, columns: Indices, step: int | None = None

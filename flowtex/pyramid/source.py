@@ -11,6 +11,7 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
+from flowtex._util.arguments import are_paths
 from flowtex._util.array_types import Bools, Floats
 from flowtex._util.arrays import norm
 from flowtex.errors import FieldError, import_extra
@@ -265,7 +266,7 @@ def _source_of(data: Any, *, name: str = "", **given: Any) -> NodeSource:
         items = data
     else:
         items = [data]
-    if not all(isinstance(each, (str, Path)) for each in items):
+    if not are_paths(items):
         given.pop("uncertainty", None)
         return FieldSource(FlowField.from_pyvista(data, name=name, **given))
     files: str | Path | Sequence[str | Path] = data

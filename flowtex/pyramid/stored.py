@@ -187,10 +187,12 @@ class StoredPyramid(Pyramid):
             velocity = stored.velocity(key.level + 1, step, *above)[coarse.valid]
             mean = averaged(np.asarray(field.velocity[step])[drawn], valid, rows, columns)
             pairs.append((mean[coarse.valid][:, : velocity.shape[-1]], velocity))
-        if not all(_agree(values, reference) for values, reference in pairs):
-            raise PyramidError(
-                f"tile {tuple(key)} of {stored.place} does not match the level above; build again"
-            )
+        for values, reference in pairs:
+            if not _agree(values, reference):
+                raise PyramidError(
+                    f"tile {tuple(key)} of {stored.place} does not match the level above; build "
+                    "again"
+                )
 
     def _positions(self, level: int, rows: Indices, columns: Indices) -> tuple[Floats, Bools]:
         return self._stored.positions(level, rows, columns)

@@ -396,7 +396,8 @@ class Threads:
             try:
                 while running:
                     done, running = wait(running, return_when=FIRST_COMPLETED)
-                    running |= {threads.submit(tried, task) for task in islice(left, len(done))}
+                    for task in islice(left, len(done)):
+                        running.add(threads.submit(tried, task))
                     for future in done:
                         yield future.result()
             finally:
@@ -429,7 +430,7 @@ class Cluster(Threads):
         """Yield the error of each task, or ``None``, in the order in which they end."""
         if not tasks:
             return
-        packed = [_packed(argument) for argument in arguments]
+        packed = list(map(_packed, arguments))
         if None in packed:
             # The source contains its data, which would go to each worker.
             yield from super().run(function, tasks, need, *arguments)

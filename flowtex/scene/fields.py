@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from flowtex._util.arguments import checked_source
+from flowtex._util.arguments import are_paths, checked_source
 from flowtex._util.cache import ByteCache, WeakCache, digest
 from flowtex.errors import FieldError
 from flowtex.field import FlowField
@@ -139,7 +139,7 @@ def _read(mesh: Any, options: FieldOptions, time: float | str | None) -> FlowFie
         meshes = mesh
     else:
         meshes = [mesh]
-    if all(isinstance(item, (str, Path)) for item in meshes):
+    if are_paths(meshes):
         return FlowField.from_file(mesh, time=time, **choices)
     choices.pop("uncertainty", None)
     if not isinstance(mesh, FlowField):

@@ -68,7 +68,7 @@ class Sampler:
         else:
             self.longest = float(np.diff(field.times).max())
         data = fill_blanked(data, field.valid, data.ndim - 3)
-        parts = [component.ravel() for component in np.moveaxis(data, -1, 0)]
+        parts = list(map(np.ravel, np.moveaxis(data, -1, 0)))
         grid = NodeGrid.of(field)
         self._poles = poles = field.surface.poles
         #: The charts of a surface that has poles.
@@ -331,7 +331,7 @@ def cap(pole: Pole, grid: NodeGrid, data: list[Floats], near: int) -> Patch:
     cells = np.ones((rows - 1, columns - 1), bool)
     return Patch(
         NodeGrid((rows, columns), grid.periodic, cells),
-        [np.ravel(strip) for strip in strips],
+        list(map(np.ravel, strips)),
         pole,
         first,
     )

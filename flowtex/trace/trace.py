@@ -211,7 +211,7 @@ def _step_numbers(field: FlowField, steps: Any) -> list[int]:
         return list(range(len(field.times)))
     numbers = []
     if np.iterable(steps):
-        numbers = [field.step_number(step) for step in steps]
+        numbers = list(map(field.step_number, steps))
     if not numbers:
         raise FieldError(f"steps is {brief(steps)}; expected numbers of time steps, such as [0]")
     return numbers
@@ -278,7 +278,7 @@ def _chosen_nodes(field: FlowField, nodes: ArrayLike | None) -> Bools:
 
 def _samplers(field: FlowField, steps: list[int], parameter: str) -> list[Sampler]:
     sampler = Sampler(field, by_length=parameter == "arclength")
-    return [sampler.since(float(field.times[step])) for step in steps]
+    return list(map(sampler.since, field.times[steps].tolist()))
 
 
 @contextmanager

@@ -142,8 +142,11 @@ def write_message(stream: IO[bytes], value: Any, arrays: Sequence[AnyArray] = ()
 
     Nothing is unpickled: a process that parses an untrusted file may be compromised.
     """
-    contiguous = list(map(np.ascontiguousarray, arrays))
-    infos = [[array.dtype.str, np.shape(array)] for array in arrays]
+    contiguous = []
+    infos = []
+    for array in arrays:
+        contiguous.append(np.ascontiguousarray(array))
+        infos.append([array.dtype.str, np.shape(array)])
     header = json.dumps({"value": value, "arrays": infos}).encode()
     if len(header) > HEADER_BYTES:
         raise ValueError(
@@ -172,7 +175,9 @@ def read_message(stream: IO[bytes], most_bytes: int) -> tuple[Any, list[AnyArray
         message = json.loads(header)
         value = message["value"]
         infos = message["arrays"]
-        types = [(_type(kind), _shape(shape)) for kind, shape in infos]
+        types = []
+        for kind, shape in infos:
+            types.append((_type(kind), _shape(shape)))
     except (ValueError, TypeError, KeyError, RecursionError) as error:
         raise ValueError(f"the header of a message is malformed: {error}") from error
     size = sum(kind.itemsize * math.prod(shape) for kind, shape in types)
@@ -196,8 +201,9 @@ def _type(text: Any) -> np.dtype[Any]:
 
 
 def _shape(sizes: Any) -> tuple[int, ...]:
-    if not all(type(n) is int and n >= 0 for n in sizes):
-        raise ValueError(f"the shape {sizes!r} of an array")
+    for size in sizes:
+        if type(size) is not int or size < 0:
+            raise ValueError(f"the shape {sizes!r} of an array")
     return tuple(sizes)
 
 

@@ -8,6 +8,7 @@ changed is opened again on request.
 
 from __future__ import annotations
 
+import fnmatch
 import os
 import threading
 from collections import defaultdict
@@ -18,7 +19,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from flowtex._util.arguments import checked_source
+from flowtex._util.arguments import are_paths, checked_source
 from flowtex._util.cache import ByteCache, WeakCache
 from flowtex.app.server.page import shortened
 from flowtex.errors import FieldError
@@ -179,7 +180,7 @@ class Library:
                 items = flow
             else:
                 items = (flow,)
-            if items and all(isinstance(item, (str, Path)) for item in items):
+            if items and are_paths(items):
                 paths = tuple(map(Path, items))
                 if len(paths) == 1:
                     name = paths[0].name
@@ -324,12 +325,15 @@ class Library:
 
 def _source_of(flow: Any, options: dict[str, Any]) -> FlowSource:
     """Return the source of a dataset, a field or a mesh."""
-    options = {key: value for key, value in options.items() if value is not None}
-    if is_dataset(flow) and not options:
+    given = {}
+    for name, value in options.items():
+        if value is not None:
+            given[name] = value
+    if is_dataset(flow) and not given:
         return DatasetSource(flow)
-    if isinstance(flow, FlowField) or not options:
+    if isinstance(flow, FlowField) or not given:
         return MeshSource(flow)
-    return MeshSource(read_field(flow, FieldOptions(**options)))
+    return MeshSource(read_field(flow, FieldOptions(**given)))
 
 
 def _constant(source: FlowSource) -> Opener:
@@ -439,7 +443,7 @@ def find_files(folder: Path) -> list[tuple[str, Path]]:
             if is_dataset_file(here / n) and not (here / n).is_symlink():
                 stores.append(n)
         depth = len(here.relative_to(folder).parts)
-        hidden = {name for name in (*folders, *names) if name.startswith(".")}
+        hidden = set(fnmatch.filter((*folders, *names), ".*"))
         searched = set()
         if depth < FOLDER_DEPTH:
             searched = set(folders) - {*stores, *hidden}

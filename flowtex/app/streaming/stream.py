@@ -89,11 +89,12 @@ class ViewPainter:
         if not self.complete:
             width = max(round(width * scale), 16)
             height = max(round(height * scale), 16)
-        first, *others = [self._quick(pane, width, height) for pane in panes]
         line = np.full((height, max(round(GAP_PX * scale), 1), 3), LINE_GREY, np.uint8)
-        columns = [first]
-        for picture in others:
-            columns += [line, picture]
+        columns: list[Bytes] = []
+        for pane in panes:
+            if columns:
+                columns.append(line)
+            columns.append(self._quick(pane, width, height))
         return np.hstack(columns)
 
     def _quick(self, pane: FlowHandle, width: int, height: int) -> Bytes:

@@ -333,7 +333,7 @@ class Viewport:
 
     def _set_picture(self, *size: int) -> None:
         self._picture = size
-        self.plotter.window_size = [min(side, self.longest_side) for side in size]
+        self.plotter.window_size = np.minimum(size, self.longest_side).tolist()
 
     def home(self, **look: Any) -> None:
         """Look at the whole surface; ``look`` are arguments of :meth:`Camera.fit`, kept as that."""

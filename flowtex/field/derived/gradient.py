@@ -392,8 +392,12 @@ def _normal_matrices(rows: Indices, weight: Floats, terms: Floats, count: int) -
 
 
 def _applied(operators: list[Any], nodal: Floats) -> Floats:
-    columns = nodal[:, 0].T
-    return np.stack([(operator @ columns).T[:, None] for operator in operators])
+    """Return derivatives (2, C, 1, N) of values at nodes, (C, 1, N)."""
+    derivatives = []
+    for operator in operators:
+        along = operator @ nodal[:, 0].T
+        derivatives.append(along.T[:, None])
+    return np.stack(derivatives)
 
 
 def _near_nodes(surface: TriangleSurface) -> tuple[Indices, Indices]:

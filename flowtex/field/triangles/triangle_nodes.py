@@ -248,7 +248,7 @@ def corner_angles(points: Floats, triangles: Indices) -> Floats:
     """Return the angles at the corners of triangles, (M, 3)."""
     result = np.empty(triangles.shape)
     for block in row_blocks(len(triangles), 1):
-        a, b, c = (points.take(corner, axis=0) for corner in triangles[block].T)
+        a, b, c = points.take(triangles[block].T, axis=0)
         one = b - a
         two = c - b
         three = a - c

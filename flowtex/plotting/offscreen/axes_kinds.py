@@ -308,7 +308,7 @@ class AxesScales:
 
     def _within(self, scaled: Floats) -> Floats:
         """Return scaled values with NaN where matplotlib clips them."""
-        beyond = (np.abs(scaled) >= BEYOND) & [name in CLIPPED for name in self.names]
+        beyond = (np.abs(scaled) >= BEYOND) & np.isin(self.names, CLIPPED)
         return np.where(beyond, np.nan, scaled)
 
     def shown(self, pixels: ArrayLike) -> Floats:

@@ -121,7 +121,8 @@ class OffscreenPlotter:
         pixels = np.asarray(image, dtype=np.uint8)
         if not transparent:
             pixels = pixels[..., :3]
-        visible = any(handle.scene.appearance.opacity > 0 for handle in self.handles)
+        opacities = [handle.scene.appearance.opacity for handle in self.handles]
+        visible = max(opacities) > 0
         if visible and (pixels[..., :3] == self._plotter.background_color.int_rgb).all():
             notify(NOTHING_SEEN, UserWarning)
         picture = averaged(pixels, self._supersampling)

@@ -139,7 +139,9 @@ def strengths(field: FlowField, nodes: Indices, signs: Indices, steepness: Float
     if field.triangles is None:
         edges = neighbour_pairs(field.shape, field.periodic)
     else:
-        edges = np.concatenate([field.triangles[:, pair] for pair in ([0, 1], [1, 2], [2, 0])])
+        first, second, third = field.triangles.T
+        sides = [(first, second), (second, third), (third, first)]
+        edges = np.concatenate(list(map(np.transpose, sides)))
         places = cast("TriangleSurface", field.surface).places
         twins = np.flatnonzero(places != np.arange(len(places)))
         edges = np.concatenate([edges, np.stack([places[twins], twins], axis=-1)])

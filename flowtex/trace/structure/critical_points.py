@@ -53,7 +53,7 @@ def steady_parts(field: FlowField, steps: Sequence[int] | None, text: str) -> It
     if steps is None:
         numbers = list(range(len(field.times)))
     else:
-        numbers = [field.step_number(n) for n in steps]
+        numbers = list(map(field.step_number, steps))
     return map(field.at_step, track(numbers, len(numbers), text))
 
 

@@ -544,7 +544,7 @@ def _of_formula(rates: Rates, window: Floats) -> tuple[Floats, Floats]:
 def _crossing(rates: Rates, component: int, sides: Floats) -> tuple[Floats, Bools]:
     """Return where a rate changes sign along sides (S, 2, 3), or ends at 0, and without a jump."""
     ends = [sides[:, 0], sides[:, 1]]
-    values = [rates.at(end[:, :2])[:, component] for end in ends]
+    values = list(rates.at(np.concatenate(ends)[:, :2])[:, component].reshape(2, -1))
     first = np.maximum(*np.abs(values))
     for _ in range(HALVINGS):
         middle = 0.5 * (ends[0] + ends[1])

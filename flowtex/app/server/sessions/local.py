@@ -265,7 +265,10 @@ class LocalSession(Session):
 def _quiet_trame() -> Iterator[None]:
     """Keep trame from reading this program's arguments and from printing."""
     quiet = {"TRAME_ARGS": "", "WSLINK_READY_MSG": ""}
-    before = {name: os.environ[name] for name in quiet if name in os.environ}
+    before = {}
+    for name in quiet:
+        if name in os.environ:
+            before[name] = os.environ[name]
     os.environ.update(quiet)
     try:
         yield
