@@ -39,7 +39,14 @@ from flowtex.sources.datasets.axes import (
 from flowtex.sources.datasets.coordinates import LATITUDE, LONGITUDE
 from flowtex.sources.datasets.flow import Flow, read_flow
 from flowtex.sources.datasets.masks import WET
-from flowtex.sources.datasets.values import Regions, read_step, region_lines
+from flowtex.sources.datasets.values import (
+    NOTABLE_GAPS,
+    LateGaps,
+    Regions,
+    gap_text,
+    read_step,
+    region_lines,
+)
 from flowtex.sources.datasets.vertical import LONGEST_NAME, is_section, read_section
 from flowtex.sources.maps import MapNodes, MeshMap, PlaneNodes, mesh_on_map, on_map
 from flowtex.sources.notices import Record
@@ -59,8 +66,6 @@ OF_GRIDS = re.compile(
     re.I,
 )
 
-#: Share of nodes without data at some times from which on a notice is issued.
-NOTABLE_GAPS = 0.01
 #: Steps of a series among which the first one that moves is searched.
 MOST_SEARCHED = 200
 
@@ -154,7 +159,11 @@ def _whole(
     record = flow.record
     nodes, arguments = _placed(flow, projection)
     # Velocity and speed use the same components.
-    read = LazySteps(count, flow.components, quick=flow.pair.u.chunks is None)
+    quick = flow.pair.u.chunks is None
+    reader: Callable[[int], Floats] = flow.components
+    if not quick:
+        reader = LateGaps(reader)
+    read = LazySteps(count, reader, quick=quick)
     own = {key: LazySteps(count, s.read) for key, s in scalars.items()}
     extra = {key: steps.map(nodes.at) for key, steps in own.items() if not scalars[key].on_faces}
     on_cells: dict[str, LazySteps] = {}
@@ -217,9 +226,9 @@ def _note_gaps(read: LazySteps, flow: Flow) -> None:
     lacking = ever & ~always
     if lacking.any():
         first = next(n for n, here in zip(steps, known, strict=True) if (ever & ~here).any())
-        text = f"{lacking.sum():,} of {lacking.size:,} nodes lack data at some times, such as step "
         notable = lacking.mean() >= NOTABLE_GAPS
-        flow.record("mask", f"{text}{first}, when they are drawn without streaks", notable=notable)
+        text = gap_text(int(lacking.sum()), lacking.size, first)
+        flow.record("mask", text, notable=notable)
 
 
 def _averaged(

@@ -24,7 +24,7 @@ from flowtex.sources.datasets.directions import in_components
 from flowtex.sources.datasets.masks import Mask, undeclared_fills, valid_range
 from flowtex.sources.datasets.staggered import Sides, centred
 from flowtex.sources.maps import Lines, NodeLines
-from flowtex.sources.notices import Record
+from flowtex.sources.notices import Record, notify
 from flowtex.sources.reader_errors import values_in
 
 if TYPE_CHECKING:
@@ -34,6 +34,8 @@ if TYPE_CHECKING:
 Chosen: TypeAlias = tuple[Indices, Indices] | None
 #: Values of a step that are examined.
 MOST_EXAMINED = 4_000_000
+#: Share of nodes without data at some times from which on a notice is issued.
+NOTABLE_GAPS = 0.01
 #: Lines of each of the nine parts of a larger one.
 PART_LINES = 200
 #: Values beyond this are missing data, even without an attribute.
@@ -86,6 +88,7 @@ class Component:
     fills: tuple[float, ...] | None = ()
     #: Further values of that kind at steps that were not examined at first.
     late_fills: dict[int, tuple[float, ...]] = field(default_factory=dict)
+    name: str = ""
 
     def read(self, step: int, lines: Chosen, *, axes: int) -> Floats:
         """Return a step, with NaN for missing data."""
@@ -110,7 +113,11 @@ class Component:
         if self.fills is None:
             return ()
         if step not in self.late_fills:
-            self.late_fills[step] = undeclared_fills(self.sample(step, axes), self.fills)
+            values = self.sample(step, axes)
+            found = undeclared_fills(values, self.fills)
+            if found and not any(self.late_fills.values()):
+                notify(masked_text(self.name, values, found[0], step))
+            self.late_fills[step] = found
         return self.late_fills[step]
 
 
@@ -127,7 +134,7 @@ def checked_component(
 
     Values outside the ``limits`` are codes, if no attribute declares a range.
     """
-    part = Component(array.variable, factor, valid_range(array) or limits)
+    part = Component(array.variable, factor, valid_range(array) or limits, name=str(array.name))
     sample = [read_step(part.variable, 0, at, axes=axes) for at in examined(array, axes)]
     flat = np.concatenate([values.ravel() for values in sample])
     if unknown := np.isnan(flat).mean():
@@ -146,11 +153,20 @@ def checked_component(
         found = undeclared_fills(values, fills)
         fills += found
         for fill in found:
-            text = f"{np.mean(values == fill):.0%} of {array.name} masked"
-            text += f" at step {step}" if step else ""
-            text += f": {fill:g}, which is far from all other values, is taken as missing; "
-            record("mask", f"{text}mask=False draws it", notable=True)
+            text = masked_text(str(array.name), values, fill, step)
+            record("mask", text, notable=True)
     return replace(part, fills=fills, late_fills=dict.fromkeys(steps, ()))
+
+
+def masked_text(name: str, values: Floats, fill: float, step: int) -> str:
+    """Return the notice about an undeclared fill value among the values of a step."""
+    text = f"{np.mean(values == fill):.0%} of {name} masked"
+    if step:
+        text += f" at step {step}"
+    return (
+        f"{text}: {fill:g}, which is far from all other values, is taken as missing; mask=False "
+        "draws it"
+    )
 
 
 def steps_to_examine(variable: xr.Variable, axes: int) -> list[int]:
@@ -219,6 +235,39 @@ class Values:
         if self.columns is None:
             return values
         return values[:, self.columns.cells]
+
+
+@dataclass(eq=False)
+class LateGaps:
+    """Reads the components of a step, and tells once where a late one lacks data.
+
+    The nodes of the first step are compared with those of others when these are read.
+    """
+
+    read: Callable[[int], Floats]
+    first: Bools | None = None  #: Nodes with data in the first step.
+    is_told: bool = False
+
+    def __call__(self, step: int) -> Floats:
+        """Return the components of a step, (2, ...)."""
+        values = self.read(step)
+        known = np.isfinite(values).all(axis=0)
+        if step == 0:
+            self.first = known
+        elif self.first is not None and not self.is_told:
+            lacking = self.first & ~known
+            if lacking.mean() >= NOTABLE_GAPS:
+                self.is_told = True
+                notify(gap_text(int(lacking.sum()), lacking.size, step))
+        return values
+
+
+def gap_text(count: int, size: int, step: int) -> str:
+    """Return the notice about nodes that lack data at some steps."""
+    return (
+        f"{count:,} of {size:,} nodes lack data at some times, such as step {step}, when they are "
+        "drawn without streaks"
+    )
 
 
 @dataclass(frozen=True, eq=False)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from typing import Any
 
 import numpy as np
@@ -222,3 +223,29 @@ def _silence() -> Any:
     from contextlib import nullcontext
 
     return nullcontext()
+
+
+@pytest.mark.parametrize("fill", [-999.0, np.nan])
+def test_gaps_of_late_lazy_steps_are_told_when_they_are_read(fill: float) -> None:
+    pytest.importorskip("dask")
+    lon, lat = np.arange(0.0, 12), np.arange(30.0, 41)
+    u = np.ones((4, 11, 12))
+    u[2, 5:, 6:] = fill
+    dims = ("time", "lat", "lon")
+    ds = xr.Dataset(
+        {"u": (dims, u, {"units": "m/s"}), "v": (dims, u, {"units": "m/s"})},
+        {"lon": lon, "lat": lat, "time": np.arange(4)},
+    )
+    with warnings.catch_warnings():
+        warnings.simplefilter("error", DatasetNotice)
+        warnings.filterwarnings("ignore", "times have no unit")
+        field = FlowField.from_xarray(ds.chunk(time=1))
+    with pytest.warns(DatasetNotice) as caught:
+        assert np.nanmax(np.abs(field.velocity[2])) < 2
+    texts = [str(notice.message) for notice in caught]
+    if fill == -999:
+        assert "27% of u masked at step 2: -999" in texts[0] and "of v masked" in texts[1]
+    assert texts[-1].startswith("36 of 132 nodes lack data at some times, such as step 2")
+    with warnings.catch_warnings():  # it is told once
+        warnings.simplefilter("error", DatasetNotice)
+        assert np.isfinite(field.velocity[3]).all()
