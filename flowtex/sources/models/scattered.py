@@ -12,6 +12,7 @@ from flowtex._util.array_types import Bools, Floats, Indices
 from flowtex.errors import FieldError
 from flowtex.field import units
 from flowtex.field.triangles.triangle_nodes import triangle_normals
+from flowtex.sources.models.rings import join_rings, whole_rings
 
 #: A length, and perhaps its unit.
 LENGTH = re.compile(
@@ -104,7 +105,13 @@ def _joined(data: bytes, on_sphere: bool, max_edge: float | None) -> Indices:  #
 
 
 def _on_sphere(p: Floats) -> Indices:
-    """Join unit vectors (N, 3), as Delaunay triangles of the sphere, with outward normals."""
+    """Join unit vectors (N, 3), as Delaunay triangles of the sphere, with outward normals.
+
+    Whole rings of latitude, as of HEALPix and reduced Gaussian grids, are joined one by one.
+    """
+    rings = whole_rings(p)
+    if rings is not None:
+        return join_rings(rings)
     from scipy.spatial import ConvexHull, QhullError
 
     middle = p.mean(axis=0)
