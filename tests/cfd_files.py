@@ -272,3 +272,52 @@ def _foam(path: Path, kind: str, text: str) -> None:
 def _listed(entries: Iterable[str]) -> str:
     lines = list(entries)
     return "\n".join([str(len(lines)), "(", *lines, ")"])
+
+
+#: Points (N, 3) and triangles (M, 3).
+Piece = tuple[Any, Any]
+VTK_TRIANGLE = 5
+
+
+def _write_cells(group: Any, cells: list[Any]) -> None:
+    group["NumberOfCells"] = [len(part) for part in cells]
+    group["NumberOfConnectivityIds"] = [part.size for part in cells]
+    group["Connectivity"] = np.concatenate([part.ravel() for part in cells]).astype("i8")
+    group["Offsets"] = np.concatenate([np.arange(0, part.size + 1, 3) for part in cells])
+
+
+def write_vtkhdf(
+    path: Path, kind: str, pieces: list[Piece], times: tuple[float, ...], vectors: Any
+) -> None:
+    """Write partitions of a mesh as VTKHDF, with the velocity of a function at some times."""
+    import h5py
+
+    points = [piece[0] for piece in pieces]
+    cells = [piece[1] for piece in pieces]
+    every = np.concatenate(points)
+    zeros = np.zeros(len(times), "i8")
+    with h5py.File(path, "w") as file:
+        root = file.create_group("VTKHDF")
+        root.attrs["Version"] = (2, 2)
+        root.attrs.create("Type", np.bytes_(kind))
+        root["Points"] = every
+        root["NumberOfPoints"] = [len(part) for part in points]
+        root["PointData/velocity"] = np.concatenate([vectors(every, time) for time in times])
+        if kind == "PolyData":
+            none = [np.zeros((0, 3), "i8")] * len(cells)
+            for name in ("Vertices", "Lines", "Polygons", "Strips"):
+                _write_cells(root.create_group(name), cells if name == "Polygons" else none)
+        else:
+            _write_cells(root, cells)
+            root["Types"] = np.full(sum(map(len, cells)), VTK_TRIANGLE, "u1")
+        if len(times) == 1:
+            return
+        steps = root.create_group("Steps")
+        steps.attrs["NSteps"] = len(times)
+        steps["Values"] = np.asarray(times)
+        steps["NumberOfParts"] = zeros + len(pieces)
+        steps["PartOffsets"] = steps["PointOffsets"] = zeros
+        columns = 4 if kind == "PolyData" else 1
+        for name in ("CellOffsets", "ConnectivityIdOffsets"):
+            steps[name] = np.zeros((len(times), columns), "i8")
+        steps["PointDataOffsets/velocity"] = np.arange(len(times)) * len(every)

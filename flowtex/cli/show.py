@@ -193,9 +193,10 @@ def _part_of(library: Library, choice: dict[str, Any]) -> dict[str, Any] | None:
 
 
 def _is_folder(path: Path) -> bool:
+    from flowtex.sources.inspection.foam_files import case_of
     from flowtex.sources.opening.dataset_files import is_dataset_file
 
-    return path.is_dir() and not is_dataset_file(path)
+    return path.is_dir() and not is_dataset_file(path) and case_of(path) is None
 
 
 def _belong_together(files: Sequence[Path]) -> bool:

@@ -23,6 +23,7 @@ from flowtex.field.field_arrays import GridArrays, TriangleArrays
 from flowtex.field.options import FieldOptions
 from flowtex.sources.datasets.read_datasets import read_datasets
 from flowtex.sources.datasets.values import Regions
+from flowtex.sources.inspection.foam_files import ENDINGS, case_of
 from flowtex.sources.inspection.inspect_file import inspect_file
 from flowtex.sources.inspection.other_programs import advice_of
 from flowtex.sources.meshes import meshio_files, parts, plot3d, separate, series
@@ -49,6 +50,8 @@ LIST_BYTES = 4_000_000
 LIST_DEPTH = 3
 #: Most files that are examined.
 MOST_FILES = 10_000
+#: The file in the folder of an OpenFOAM case that its reader needs.
+CONTROL = "system/controlDict"
 #: Endings of XDMF.
 XDMF = (".xdmf", ".xmf")
 #: Endings of files whose data may be in others of the same name.
@@ -72,13 +75,20 @@ def open_reader(file: Path) -> Any:
 
     if file.suffix.lower() in XDMF:
         return _xdmf_reader(file)
-    case = file.parent
-    in_pieces = (case / "processor0").is_dir() and not (case / "constant" / "polyMesh").is_dir()
-    if file.suffix.lower() == ".foam" and in_pieces:
-        return DecomposedReader(str(file))
+    case = case_of(file)
+    if case is not None:
+        marker = file
+        if file.is_dir():
+            marker = case / CONTROL
+        in_pieces = (case / "processor0").is_dir() and not (case / "constant/polyMesh").is_dir()
+        if in_pieces:
+            return DecomposedReader(str(marker))
+        return pv.POpenFOAMReader(str(marker))
     reader: Any = pv.get_reader(str(file))
     if isinstance(reader, pv.CGNSReader):
         return _CGNSReader(reader)
+    if isinstance(reader, pv.HDFReader):
+        return _TimedReader(reader)
     return reader
 
 
@@ -103,16 +113,13 @@ def _xdmf_reader(file: Path) -> Any:
     return XdmfReader(str(file))
 
 
-class _CGNSReader:
-    """PyVista's reader of CGNS with times, all bases, and blocks named ``Base/Zone``."""
+class _TimedReader:
+    """A reader of PyVista's that has no times itself, with those that VTK reports."""
 
     def __init__(self, reader: Any) -> None:
         from vtkmodules.vtkCommonExecutionModel import vtkStreamingDemandDrivenPipeline
 
         self._reader = reader
-        # With patches each zone is a tree, and patches are not structured grids.
-        reader.load_boundary_patch = False
-        reader.enable_all_bases()
         reader.reader.UpdateInformation()
         information = reader.reader.GetOutputInformation(0)
         times = information.Get(vtkStreamingDemandDrivenPipeline.TIME_STEPS()) or ()
@@ -130,11 +137,21 @@ class _CGNSReader:
         """Set the time to read."""
         self.active_time_value = time
 
-    def read(self) -> pv.MultiBlock:
-        """Read the blocks at the active time."""
+    def read(self) -> pv.DataObject:
+        """Read the mesh or the blocks at the active time."""
         if self.time_values:
             self._reader.reader.UpdateTimeStep(self.active_time_value)
         return self._reader.read()
+
+
+class _CGNSReader(_TimedReader):
+    """PyVista's reader of CGNS with times, all bases, and blocks named ``Base/Zone``."""
+
+    def __init__(self, reader: Any) -> None:
+        # With patches each zone is a tree, and patches are not structured grids.
+        reader.load_boundary_patch = False
+        reader.enable_all_bases()
+        super().__init__(reader)
 
 
 _KNOWN_FORMATS = (
@@ -194,6 +211,18 @@ def open_file(path: str | Path) -> OpenFile:
         raise FieldError(f"unknown format ({reason}); expected {_KNOWN_FORMATS}") from error
 
 
+def _case_problem(file: Path, case: Path | None) -> str:
+    """Return why nothing can be read of an OpenFOAM case; empty otherwise."""
+    if case is None:
+        return ""
+    if not [*case.glob("constant"), *case.glob("processor*")]:
+        return "its folder has no folder constant; expected the folder of an OpenFOAM case"
+    if case == file and not (case / CONTROL).is_file():
+        text = f"this is a case of OpenFOAM without {CONTROL}; copy that file into it, or make an"
+        return f"{text} empty file {file.name}.foam in it, and name that"
+    return ""
+
+
 def _path_problem(file: Path) -> str:
     """Return why nothing can be read from a path, before any reader opens it; empty otherwise."""
     if _ADDRESS.match(str(file)) and not file.exists():
@@ -201,9 +230,9 @@ def _path_problem(file: Path) -> str:
             "this address has no flowtex pyramid, and files are read only from folders; open the "
             "data with xarray.open_dataset or xarray.open_zarr, and pass the dataset"
         )
-    case = [*file.parent.glob("constant"), *file.parent.glob("processor*")]
-    if file.suffix.lower() == ".foam" and not case:
-        return "its folder has no folder constant; expected the folder of an OpenFOAM case"
+    case = case_of(file)
+    if problem := _case_problem(file, case):
+        return problem
     if not file.exists():
         if file.name:
             similar = sorted(p.name for p in file.parent.glob(f"{file.stem}.*"))
@@ -215,10 +244,7 @@ def _path_problem(file: Path) -> str:
             names = ""
         text = "the file does not exist; check the spelling and the folder (patterns are not"
         return f"{text} expanded){names}"
-    if (file / "constant" / "polyMesh").exists():
-        text = "this is a case of OpenFOAM; make an empty file"
-        return f"{text} {file.name}.foam in it, and name that"
-    if file.is_dir():
+    if file.is_dir() and case is None:
         return "this is a folder; expected a file: name the mesh inside it"
     if file.suffix.lower() in {".pkl", ".pickle", ".joblib"}:
         return (
@@ -227,10 +253,11 @@ def _path_problem(file: Path) -> str:
         )
     if advice := advice_of(file):
         return advice
+    if case is not None:  # an empty file marks it
+        return ""
     try:
         with file.open("rb") as stream:
-            # OpenFOAM marks a case with an empty file.
-            is_empty = not stream.read(1) and file.suffix != ".foam"
+            is_empty = not stream.read(1)
     except OSError as error:
         return f"cannot be opened ({error.strerror}); check its permissions"
     if is_empty:
@@ -349,7 +376,7 @@ def members_of(path: Path) -> list[Path]:
 def _files(path: Path, depth: int) -> Iterator[Path]:
     yield path
     suffix = path.suffix.lower()
-    if path.is_dir() or suffix == ".foam":
+    if path.is_dir() or suffix in ENDINGS:
         # A store may have far more files than are compared, so its folders are listed one by one.
         for folder, folders, names in os.walk(path if path.is_dir() else path.parent):
             folders.sort()

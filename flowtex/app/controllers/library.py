@@ -30,6 +30,8 @@ from flowtex.pyramid import open_store
 from flowtex.pyramid.source import has_parts
 from flowtex.scene.fields import read_field
 from flowtex.sources.datasets import is_dataset
+from flowtex.sources.inspection.foam_files import ENDINGS as FOAM
+from flowtex.sources.inspection.foam_files import case_of
 from flowtex.sources.meshes.plot3d import SURFACE_SUFFIXES as WITHOUT_VECTORS
 from flowtex.sources.open_source import DatasetSource, FlowSource, MeshSource
 from flowtex.sources.opening.dataset_files import COMMON, common_name, is_dataset_file
@@ -41,7 +43,8 @@ from flowtex.sources.remote import open_remote, prepare_readers
 SUFFIXES = frozenset(
     [
         *(".vts", ".vtr", ".vti", ".vtk", ".vtu", ".vtp", ".vtm", ".vtmb", ".pvd", ".pvts"),
-        *(".pvtr", ".pvti", ".pvtu", ".pvtp", ".xyz", ".x", ".g", ".case", ".cgns", ".foam"),
+        *(".pvtr", ".pvti", ".pvtu", ".pvtp", ".xyz", ".x", ".g", ".case", ".cgns", ".vtkhdf"),
+        *FOAM,
         *(".e", ".ex2", ".exii", ".exo", ".stl", ".ply", ".obj", ".msh", ".med", ".xdmf", ".xmf"),
         *EARTH_SUFFIXES,
     ]
@@ -172,7 +175,7 @@ class Library:
             return flows[0]
         if len(flows) == 1 and isinstance(flows[0], (str, Path)):
             path = Path(flows[0])
-            if path.is_dir() and not is_dataset_file(path):
+            if path.is_dir() and not is_dataset_file(path) and case_of(path) is None:
                 return cls({}, path)
         openers: dict[str, Opener] = {}
         for flow in flows:

@@ -16,6 +16,10 @@ from flowtex._util.array_types import AnyArray
 from flowtex._util.memory import check_memory
 from flowtex.errors import FieldError
 
+#: Endings of files that mark a case.
+ENDINGS = (".foam", ".openfoam")
+#: Contents of the folder of a case, of which one is there.
+CONTENTS = ("constant/polyMesh", "system/controlDict", "processor0/constant")
 #: Folders of meshes in a case: of times and of regions, also of parts of a decomposed case.
 MESHES = ("*/polyMesh", "*/*/polyMesh", "*/*/*/polyMesh")
 #: Brackets at the end of a list, by those before it.
@@ -31,6 +35,15 @@ _GAP = rb"(?:\s|//[^\n]*|/\*(?s:.*?)\*/)*"
 _LIST = re.compile(_GAP + rb"(\d+)" + _GAP + rb"([({])")
 #: A cell outside of the mesh, beyond its boundary, as old versions write it.
 OUTSIDE = -1
+
+
+def case_of(path: Path) -> Path | None:
+    """Return the folder of a case by a file in it or itself; ``None`` for other paths."""
+    if path.suffix.lower() in ENDINGS and not path.is_dir():
+        return path.parent
+    if path.is_dir() and any((path / part).exists() for part in CONTENTS):
+        return path
+    return None
 
 
 def check_foam(case: Path) -> None:

@@ -15,7 +15,7 @@ from typing import Any, NoReturn
 from flowtex._util.memory import check_memory
 from flowtex.errors import FieldError, import_extra
 from flowtex.sources.inspection import vtk_files
-from flowtex.sources.inspection.foam_files import check_foam
+from flowtex.sources.inspection.foam_files import case_of, check_foam
 from flowtex.sources.inspection.obj_files import check_obj
 from flowtex.sources.inspection.ply_files import check_ply
 from flowtex.sources.inspection.stl_files import check_stl
@@ -89,8 +89,9 @@ def inspect_file(path: Path, *, whole: bool = True) -> None:
     """
     if path.is_dir() and any((path / name).is_file() for name in DOCUMENTS):
         check_zarr(path)
-    if path.suffix.lower() == ".foam":
-        check_foam(path.parent)
+    case = case_of(path)
+    if case is not None:
+        check_foam(case)
     waiting = [(path, False)]
     seen = {realpath(path)}
     while waiting:

@@ -40,7 +40,7 @@ def check_mesh(mesh: Any) -> None:
     """
     import pyvista as pv
 
-    if isinstance(mesh, pv.MultiBlock):
+    if isinstance(mesh, (pv.MultiBlock, pv.PartitionedDataSet)):
         for block in mesh:
             check_mesh(block)
     elif isinstance(mesh, pv.UnstructuredGrid):

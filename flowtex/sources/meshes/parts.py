@@ -39,6 +39,8 @@ Parts: TypeAlias = "dict[str, pv.DataSet]"
 
 #: Nodes of two steps closer than this share of the extent of the mesh are the same.
 SAME_NODE_SHARE = 1e-6
+#: Bit of VTK's ghost type of the cells that are copies of other partitions' cells.
+COPIED = 1
 #: Most blocks that a message lists.
 MOST_LISTED = 12
 #: Length of a gap in usual steps from which on a notice is issued.
@@ -114,6 +116,7 @@ def leaves(mesh: Any, name: str = "") -> Iterator[tuple[str, Any]]:
     """Yield the meshes in a tree of blocks by path; equal names get their number."""
     import pyvista as pv
 
+    mesh = joined(mesh)
     if not isinstance(mesh, pv.MultiBlock):
         yield name, mesh
         return
@@ -127,6 +130,31 @@ def leaves(mesh: Any, name: str = "") -> Iterator[tuple[str, Any]]:
             if not (keys.count(key) == 1 or key is None):
                 label = f"{label} {number}"
             yield from leaves(block, f"{name}/{label}" if name else label)
+
+
+def joined(mesh: Any) -> Any:
+    """Return the partitions of one mesh as this mesh, structured ones as blocks."""
+    import pyvista as pv
+
+    if not isinstance(mesh, pv.PartitionedDataSet):
+        return mesh
+    pieces = pv.MultiBlock()
+    for piece in mesh:
+        if piece is not None and piece.n_cells:
+            pieces.append(_without_copies(piece))
+    if len(pieces) < 2 or any(map(is_structured, pieces)):
+        return pieces
+    return pieces.combine(merge_points=True, tolerance=0.0)
+
+
+def _without_copies(piece: pv.DataSet) -> pv.DataSet:
+    """Return a partition without the cells that are copies of those of others."""
+    ghosts = np.asarray(piece.cell_data.get("vtkGhostType", np.zeros(0)), dtype=np.uint8)
+    copies = (ghosts & COPIED) > 0
+    if not copies.any() or is_structured(piece):
+        return piece
+    kept: Any = np.flatnonzero(~copies)
+    return piece.extract_cells(kept)
 
 
 def parts_of(mesh: Any) -> Parts:
@@ -198,7 +226,7 @@ def read_checked(reader: Any) -> Any:
     """Read what a reader is set to, and check it before any filter of VTK sees it."""
     mesh = reader.read()
     check_mesh(mesh)
-    return mesh
+    return joined(mesh)
 
 
 def _read(reader: Any, block: int | str | None, **options: Any) -> Iterator[TimeStep]:
@@ -323,7 +351,7 @@ def _wrapped(source: Any, label: str) -> pv.DataObject:
         else:
             mesh = pv.wrap(source)
         check_mesh(mesh)
-        return mesh
+        return joined(mesh)
     raise FieldError(
         f"{label} has type {type(source).__name__}; expected a PyVista mesh or MultiBlock, a list "
         "of them, or a reader; for others use FlowField.from_arrays, from_triangles or from_xarray"
@@ -492,17 +520,33 @@ def ordered_times(steps: Sequence[TimeStep], record: Record) -> tuple[list[int],
     return order, moments
 
 
-def common_scalars(
+def scalar_steps(
     scalars: Sequence[dict[str, Floats]], times: Any, record: Record
 ) -> dict[str, Floats]:
-    """Return the arrays that all steps have, (T, ...)."""
-    common = dict(scalars[0])
-    for n, arrays in enumerate(scalars):
-        for name in [name for name in common if name not in arrays]:
-            if times is None:
-                when = f"step {n}"
-            else:
-                when = f"time {times[n]:g}"
-            record("align", f"{name!r} is missing at {when}, so it is not read", notable=True)
-            del common[name]
-    return {name: np.stack([arrays[name] for arrays in scalars]) for name in common}
+    """Return the arrays of all steps, (T, ...), NaN at those that lack one."""
+    names: dict[str, Floats] = {}
+    for arrays in reversed(scalars):
+        names |= arrays
+    found = {}
+    lacking: dict[tuple[int, ...], list[str]] = {}
+    for name, known in names.items():
+        missing = np.full_like(known, np.nan, dtype=float)
+        found[name] = np.stack([arrays.get(name, missing) for arrays in scalars])
+        steps = tuple(n for n, arrays in enumerate(scalars) if name not in arrays)
+        if steps:
+            lacking.setdefault(steps, []).append(name)
+    for steps, lost in lacking.items():
+        if times is None:
+            texts = [f"step {n}" for n in steps]
+        else:
+            texts = [f"time {times[n]:g}" for n in steps]
+        listed = ", ".join(texts[:MOST_LISTED])
+        if len(texts) > MOST_LISTED:
+            listed += ", ..."
+        # Initial values often lack what is computed from a flow.
+        notable = 0 not in steps
+        for name in lost:
+            if name.rpartition("_")[0] not in lost:  # else a component
+                text = f"{name!r} is missing at {listed}, where it has no data"
+                record("align", text, notable=notable)
+    return found

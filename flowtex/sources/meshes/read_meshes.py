@@ -151,6 +151,7 @@ def _stacked(
     velocity = read_as.drawn
     masks, first, reordered = Masks(read_as.stored), next(steps), 0
     start: Sheet | None = None
+    single: set[str] = set()
     read = []
     for step in chain([first], steps):
         parts.check_arrays(step, first, read_as.stored)
@@ -162,6 +163,7 @@ def _stacked(
             start = sheet
         else:
             parts.check_nodes(start, sheet, step.label)
+        single |= {array.name for array in sheet.arrays if array.components == 1}
         values = sheet.nodes(velocity), *_scalars(sheet, preference, velocity)
         # Meshes are not kept.
         read.append((replace(step, grid=None), sheet.shown, sheet.cells, *values))
@@ -184,18 +186,25 @@ def _stacked(
     flow = np.zeros((len(order), *vectors[0].shape[:-1], 3))
     for n, number in enumerate(order):
         flow[n][..., axes] = vectors[number]
+    _note_rest(flow, moments, record)
+    nodal, flat = (parts.scalar_steps([s[n] for n in order], moments, record) for s in scalars)
+    for name in {*nodal} & {*flat}:
+        record("align", f"{name!r} lies on nodes and on cells; that on nodes is read", notable=True)
+        del flat[name]
+    arrays = {"points": start.points, "velocity": flow, "valid": valid}
+    arrays |= {"scalars": nodal, "cell_scalars": flat}
+    arrays["parts"] = tuple(name for name in (*nodal, *flat) if name not in single)
+    triangles = {} if start.triangles is None else {"triangles": start.triangles}
+    return {**arrays, **triangles, "times": moments if times is None else times}
+
+
+def _note_rest(flow: Floats, moments: Any, record: Record) -> None:
+    """Record the first step of a velocity (T, ...) that moves, if the first one is at rest."""
     moving = [n for n, step in enumerate(flow) if np.nan_to_num(step).any()]
     if moving and moving[0]:
         when = f"step {moving[0]}" if moments is None else f"time {moments[moving[0]]:g}"
         text = f"the velocity is zero everywhere at the first step; it is not from {when} on"
         record("mask", text, notable=True)
-    nodal, flat = (parts.common_scalars([s[n] for n in order], moments, record) for s in scalars)
-    arrays = {"points": start.points, "velocity": flow, "valid": valid}
-    arrays |= {"scalars": nodal, "cell_scalars": flat}
-    single = {array.name for array in start.arrays if array.components == 1}
-    arrays["parts"] = tuple(name for name in (*nodal, *flat) if name not in single)
-    triangles = {} if start.triangles is None else {"triangles": start.triangles}
-    return {**arrays, **triangles, "times": moments if times is None else times}
 
 
 def _scalars(

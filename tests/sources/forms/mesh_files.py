@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 import pyvista as pv
+from cfd_files import write_vtkhdf
 from known_flow import Truth, at_points, plane
 from scipy.spatial import Delaunay
 from supported import Made, supported
@@ -102,6 +103,44 @@ def xdmf_series(folder: Path) -> Made:
     collection = f'<Grid GridType="Collection" CollectionType="Temporal">{grids}</Grid>'
     write_xdmf(folder / "series.xmf", collection)
     return {}, truth(times=(0.0, 1.5))
+
+
+def pieces() -> list[Any]:
+    """Return the points and triangles of two unit squares beside each other."""
+    found = []
+    for left in (0.0, 1.0):
+        mesh = pv.Plane(center=(left + 0.5, 0.5, 0), i_resolution=8, j_resolution=8).triangulate()
+        found.append((np.asarray(mesh.points, dtype=float), mesh.faces.reshape(-1, 4)[:, 1:]))
+    return found
+
+
+def of_pieces(**more: Any) -> Truth:
+    x, y = np.meshgrid(np.linspace(0, 2, 17), np.linspace(0, 1, 9))
+    return at_points(np.stack([x.ravel(), y.ravel()], axis=-1), **more)
+
+
+@supported(
+    KIND, "VTKHDF, in partitions and with times", 'flowtex.show("flow.vtkhdf")', "as one mesh"
+)
+def vtkhdf(folder: Path) -> Made:
+    times = (0.0, 1.5)
+    write_vtkhdf(folder / "flow.vtkhdf", "UnstructuredGrid", pieces(), times, vectors)
+    return {}, of_pieces(times=times)
+
+
+@supported(
+    KIND,
+    "`pyvista.PartitionedDataSet`",
+    "flowtex.show(parts)",
+    "one mesh, without the copies of cells of other partitions",
+)
+def partitions(folder: Path) -> Made:
+    parts = []
+    for places, triangles in pieces():
+        parts.append(pv.PolyData.from_regular_faces(places, triangles))
+        parts[-1]["velocity"] = vectors(places)
+    make: Any = pv.PartitionedDataSet
+    return {"parts": make(parts)}, of_pieces()
 
 
 def zones() -> tuple[pv.MultiBlock, Truth]:

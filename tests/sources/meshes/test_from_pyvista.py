@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import warnings
 from typing import Any
 
 import numpy as np
@@ -403,11 +404,24 @@ def test_parts_of_one_mesh_are_no_steps() -> None:
     assert field.points[..., 0].min() == 4
 
 
-def test_a_scalar_that_a_step_lacks_is_left_out() -> None:
-    second = at_time(1.0)
-    second.point_data.remove("p")
-    with pytest.warns(Notice, match=r"^'p' is missing at time 1, so it is not read$"):
-        assert not FlowField.from_pyvista([at_time(0.0), second]).scalars
+@pytest.mark.parametrize("lacking", [0, 1])
+def test_scalar_of_some_steps_is_missing_at_the_others(lacking: int) -> None:
+    steps = [at_time(0.0), at_time(1.0)]
+    expected = [np.asarray(step["p"]) for step in steps]
+    steps[lacking].point_data.remove("p")
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always", Notice)
+        field = FlowField.from_pyvista(steps)
+    text = f"'p' is missing at time {lacking}, where it has no data"
+    assert text in str(field.reading)
+    # Initial values often lack what is computed from a flow.
+    told = [str(notice.message) for notice in caught]
+    assert told.count(text) == lacking
+    assert set(field.scalars) == {"p"} and not field.parts
+    assert np.isnan(np.asarray(field.scalars["p"][lacking])).all()
+    np.testing.assert_array_equal(
+        np.sort(np.ravel(field.scalars["p"][1 - lacking])), np.sort(expected[1 - lacking])
+    )
 
 
 def test_a_gap_in_time_is_told() -> None:

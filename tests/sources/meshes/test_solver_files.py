@@ -22,10 +22,11 @@ from cfd_files import (
 )
 
 from flowtex import FlowField
+from flowtex.app.controllers.library import Library
 from flowtex.errors import FieldError, Notice
 from flowtex.sources.meshes.separate import SeparateReader
 from flowtex.sources.open_source import MeshSource
-from flowtex.sources.read_files import BlockSummary, describe, open_reader
+from flowtex.sources.read_files import BlockSummary, describe, file_identity, open_reader
 
 #: The flows of these tests go through their meshes.
 pytestmark = pytest.mark.filterwarnings(
@@ -268,9 +269,35 @@ def test_hexahedra_of_cgns(tmp_path: Path) -> None:
     assert FlowField.from_file(path, slice="z").triangles is not None
 
 
-def test_a_case_of_openfoam_is_named_by_a_file_in_it(tmp_path: Path) -> None:
+@pytest.mark.parametrize("name", ["", "case.OpenFOAM", "processors", "case.OpenFOAM in pieces"])
+def test_case_of_openfoam_by_its_folder_or_another_ending(name: str, tmp_path: Path) -> None:
+    folder = tmp_path / "cavity"
+    folder.mkdir()
+    usual = folder / "case.foam"
+    write_foam(usual, decomposed="pieces" in name or name == "processors")
+    path = folder
+    if name.startswith("case"):
+        path = usual.with_name("case.OpenFOAM")
+        path.touch()
+    with pytest.warns(Notice, match=OUTER):
+        expected = FlowField.from_file(usual)
+    if not name.startswith("case"):
+        usual.unlink()
+    with pytest.warns(Notice, match=OUTER):
+        field = FlowField.from_file(path)
+    assert field.times.tolist() == list(TIMES)
+    np.testing.assert_array_equal(field.points, expected.points)
+    np.testing.assert_array_equal(field.velocity, expected.velocity)
+    assert describe(path).times == TIMES
+    assert len(Library.of(path).names) == 1
+    assert {str(folder / "0.5" / "U"), str(folder / "processor0" / "0.5" / "U")} & {
+        file for file, *_ in file_identity([path])
+    }
+
+
+def test_case_of_openfoam_without_its_control_raises(tmp_path: Path) -> None:
     (tmp_path / "case" / "constant" / "polyMesh").mkdir(parents=True)
-    with pytest.raises(FieldError, match=r"case of OpenFOAM; make an empty file case\.foam in it"):
+    with pytest.raises(FieldError, match=r"without system/controlDict; .*case\.foam in it"):
         FlowField.from_file(tmp_path / "case")
     (tmp_path / "x.foam").touch()
     with pytest.raises(FieldError, match="its folder has no folder constant"):
