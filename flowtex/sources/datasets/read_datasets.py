@@ -159,11 +159,7 @@ def _whole(
     record = flow.record
     nodes, arguments = _placed(flow, projection)
     # Velocity and speed use the same components.
-    quick = flow.pair.u.chunks is None
-    reader: Callable[[int], Floats] = flow.components
-    if not quick:
-        reader = LateGaps(reader)
-    read = LazySteps(count, reader, quick=quick)
+    read = _steps_of(flow)
     own = {key: LazySteps(count, s.read) for key, s in scalars.items()}
     extra = {key: steps.map(nodes.at) for key, steps in own.items() if not scalars[key].on_faces}
     on_cells: dict[str, LazySteps] = {}
@@ -192,6 +188,14 @@ def _whole(
     arguments |= {"times": flow.drawn.times, "scalars": extra, "cell_scalars": on_cells}
     arguments |= {"projection": nodes.projection, "reading": record.reading, **words}
     return GridArrays(**arguments) if flow.mesh is None else TriangleArrays(**arguments)
+
+
+def _steps_of(flow: Flow) -> LazySteps:
+    """Return the components at all steps, of task graphs with a notice when one has gaps."""
+    count = flow.drawn.steps
+    if flow.pair.u.chunks is None:
+        return LazySteps(count, flow.components, quick=True)
+    return LazySteps(count, LateGaps(flow.components))
 
 
 def _speed(nodes: Placed, components: Floats) -> Floats:
