@@ -240,7 +240,8 @@ def _with_tiles(scene: ClientData) -> ClientData:
         room = float(TILE_BYTES)
     else:
         room = float(min(TILE_BYTES, SLICE_BYTES))
-    size = _text_size(scene.surface()) + scene.steps * _text_size(scene.step(0))
+    coarse = replace(scene, finest=finest)
+    size = _text_size(coarse.surface()) + scene.steps * _text_size(scene.step(0))
     size_by_node = size / math.prod(pyramid.shape(pyramid.depth))
     while finest:
         room -= size_by_node * math.prod(pyramid.shape(finest - 1))

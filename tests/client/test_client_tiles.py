@@ -16,12 +16,13 @@ from triangle_meshes import sphere
 from webgl_page import ClientPage, TileMaker, packed, state, tile_maker
 
 import flowtex
-from flowtex._util.array_types import Bytes
+from flowtex._util.array_types import Bytes, Floats, Indices
 from flowtex.host.export import export, page_text
 from flowtex.host.view import WebView, web_views
 from flowtex.rendering.camera import Camera, apply_camera
 from flowtex.rendering.webgl.client_data import ClientData
 from flowtex.scene.options import Options
+from flowtex.textures.tiles.blocks import triangle_roughness
 from flowtex.textures.tiles.pyramid import TileKey
 
 if TYPE_CHECKING:
@@ -218,10 +219,10 @@ def test_a_page_without_room_has_no_tiles(monkeypatch: pytest.MonkeyPatch) -> No
     assert Reader(text).header()["pyramid"] is None
 
 
-def triangles_of_ball() -> flowtex.FlowField:
+def triangles_of_ball(tilt: float = 0.3) -> flowtex.FlowField:
     """A flow on triangles, which clients do not trace."""
     points, triangles = sphere(4)
-    return flowtex.FlowField.from_triangles(points, triangles, np.cross(points, [0.3, 0.2, 1.0]))
+    return flowtex.FlowField.from_triangles(points, triangles, np.cross(points, [tilt, 0.2, 1.0]))
 
 
 def test_room_for_slices_does_not_limit_velocities(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -231,6 +232,23 @@ def test_room_for_slices_does_not_limit_velocities(monkeypatch: pytest.MonkeyPat
     monkeypatch.setattr("flowtex.host.export.SLICE_BYTES", 0)
     assert Reader(page_text([view])).header()["pyramid"] is None
     assert Reader(page_text([viewed()[0]])).header()["pyramid"] is not None
+
+
+def test_levels_that_are_not_in_a_page_are_not_searched(monkeypatch: pytest.MonkeyPatch) -> None:
+    searched: list[int] = []
+
+    def roughness(field: flowtex.FlowField, triangles: Indices, parts: list[Indices]) -> Floats:
+        searched.append(field.shape[1])
+        return triangle_roughness(field, triangles, parts)
+
+    monkeypatch.setattr("flowtex.textures.tiles.triangle_pyramid.triangle_roughness", roughness)
+    monkeypatch.setattr("flowtex.textures.tiles.triangle_pyramid.ROOT_NODES", 350)
+    monkeypatch.setattr("flowtex.host.export.SLICE_BYTES", 200_000)
+    ball = triangles_of_ball(0.1)  # Equal fields would share what is searched.
+    (view,) = web_views(ball, Options.split(**LOOK))
+    pyramid = Reader(page_text([view])).header()["pyramid"]
+    assert pyramid["finest"] == 1 < pyramid["depth"] == 2
+    assert max(searched) == pyramid["shapes"][1][1] < ball.shape[1]
 
 
 def test_a_tile_that_fails_fails_the_page(monkeypatch: pytest.MonkeyPatch) -> None:

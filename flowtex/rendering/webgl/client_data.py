@@ -250,8 +250,7 @@ class ClientData:
         if not (geometry.planar or (self.traced and self.textures.grid.is_smooth)):
             parts["normal"] = np.rint(geometry.normal * NORMAL_MAX).astype("<i2")
         if self.pyramid is not None:
-            places = [self.pyramid.smooth_places(level) for level in range(self.pyramid.depth + 1)]
-            parts["places"] = np.concatenate([p.reshape(-1, 5) for p in places]).astype("<f4")
+            parts["places"] = self._places(self.pyramid)
         parts["mesh"] = self._mesh
         if self.traced:
             parts |= velocity.surface_parts(self.textures, self._depth)
@@ -264,6 +263,18 @@ class ClientData:
         land = colours.land is not None
         tiled = self.pyramid is not None
         return {**parts, **earth_parts(geometry, has_land=land, tiled=tiled)}
+
+    def _places(self, pyramid: Pyramid) -> Floats32:
+        """Return the places of the blocks of all levels, (N, 5), one level after the other."""
+        found = []
+        for level in range(pyramid.depth + 1):
+            # Blocks of which no finer ones are sent are drawn however large their cells are.
+            if level > self.finest:
+                places = pyramid.smooth_places(level)
+            else:
+                places = pyramid.places(level)
+            found.append(places.reshape(-1, 5))
+        return np.concatenate(found).astype("<f4")
 
     def step(self, step: int) -> Parts:
         """Return the arrays of a time step, the smallest first.
