@@ -82,8 +82,8 @@ def triangle_nodes(
     if isinstance(velocity, LazySteps):
         steps = velocity.map(partial(_row, ok))
     data = _rows(scalars, arrays, len(p))
-    drawn, pairs = _usable(p, corners.astype(np.intp))
-    solid = corners[drawn].astype(np.intp)
+    drawn, pairs = _usable(p, corners.astype(np.intp, copy=False))
+    solid = _rows_of(corners, drawn)
     _check_any_usable(ok, solid)
     # Unknown positions must not take part in computations.
     p = np.where(finite_nodes(p[None])[0][:, None], p, np.mean(p[ok], axis=0))
@@ -159,6 +159,13 @@ class _Placed:
         return map_steps(steps, partial(_row_means, summed=summed))
 
 
+def _rows_of(corners: Indices, chosen: Indices) -> Indices:
+    """Return some triangles (m, 3) by their numbers (m,), without a copy if these are all."""
+    if len(chosen) < len(corners):
+        corners = corners[chosen]
+    return corners.astype(np.intp, copy=False)
+
+
 def _row_means(step: Floats, summed: Callable[[Floats], Floats]) -> Floats:
     """Return :func:`known_means` of a row of nodes, (1, N, ...)."""
     return known_means(step[0], summed)[None]
@@ -170,7 +177,7 @@ def _placed(p: Floats, corners: Indices, pairs: Indices, ok: Bools, *, on_globe:
     is_joined = same != np.arange(len(p))
     kept = ~is_joined[corners].any(axis=1)
     kept[~kept] = solid_triangles(p, same[corners[~kept]])
-    corners = corners[kept]
+    corners = _rows_of(corners, np.flatnonzero(kept))
     is_used = np.zeros(len(p), dtype=bool)
     is_used[same[corners]] = True
     number = np.where(is_used, np.cumsum(is_used) - 1, -1)[same]

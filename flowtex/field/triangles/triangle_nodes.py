@@ -23,6 +23,8 @@ GENERIC = np.array([0.36787944, 0.69314718, 0.61983])
 NEEDLE_SHARE = 1e-4
 #: Range of random numbers of nodes, whose sums fit into 64 bits, also as floating-point numbers.
 MOST_RANDOM = 2**50
+#: Corners that 32 bits can number.
+MOST_SMALL = 2**31
 #: Cosine of the angle between the normals of a node and a triangle below which an edge is sharp.
 SHARP = 0.86
 
@@ -280,21 +282,45 @@ def connected_parts(beside: Indices) -> Indices:
     return np.asarray(parts, np.intp)
 
 
+def _sorting(numbers: Indices, count: int) -> Indices:
+    """Return the order (n,) that sorts numbers from 0 to ``count``, equal ones as they are.
+
+    A sparse matrix with an entry in each row is sorted by columns without comparisons.
+    """
+    begins = np.arange(len(numbers) + 1, dtype=numbers.dtype)
+    entries = np.ones(len(numbers), np.int8), numbers, begins
+    matrix = scipy.sparse.csr_array(entries, shape=(len(numbers), count))
+    return np.asarray(matrix.tocsc().indices)
+
+
 def neighbours(points: Floats, triangles: Indices) -> Indices:
     """Return the triangle across each edge, (M, 3), -1 at a border; of several the straightest."""
-    keys = _edge_keys(triangles)
-    order = np.argsort(keys)
-    ordered = keys[order]
-    starts = np.flatnonzero(np.diff(ordered, prepend=-1))
-    counts = np.diff(np.append(starts, len(ordered)))
-    result = np.full(len(keys), -1, dtype=np.intp)
-    shared = starts[counts == 2]
+    count = int(triangles.max(initial=0)) + 1
+    small = triangles.astype(np.int32 if triangles.size < MOST_SMALL else np.int64)
+    begin = np.roll(small, -1, axis=1).ravel()
+    end = np.roll(small, 1, axis=1).ravel()
+    low = np.minimum(begin, end)
+    high = np.maximum(begin, end)
+    order = _sorting(high, count)
+    order = order[_sorting(low[order], count)]
+    low = low[order]
+    high = high[order]
+    # Whether each side has the edge of the next one, and of the one before.
+    ahead = np.append((low[1:] == low[:-1]) & (high[1:] == high[:-1]), False)
+    back = np.append(False, ahead[:-1])
+    is_first = ahead & ~back
+    has_third = is_first[:-1] & ahead[1:]
+    result = np.full(len(order), -1, dtype=np.intp)
+    shared = np.flatnonzero(is_first)
+    if has_third.any():
+        starts = np.flatnonzero(~back)
+        counts = np.diff(np.append(starts, len(order)))
+        crowded = counts > 2
+        _straightest(points, triangles, order, starts[crowded], counts[crowded], result)
+        shared = starts[counts == 2]
     near = order[shared]
     far = order[shared + 1]
     result[near], result[far] = far // 3, near // 3
-    crowded = counts > 2
-    if crowded.any():
-        _straightest(points, triangles, order, starts[crowded], counts[crowded], result)
     return result.reshape(-1, 3)
 
 
