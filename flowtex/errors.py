@@ -14,6 +14,8 @@ from importlib import import_module
 from pathlib import Path
 from typing import Any
 
+from flowtex.remedies import Remedy
+
 _PACKAGE = Path(__file__).resolve().parent
 
 
@@ -60,15 +62,21 @@ def raise_faults(faults: Sequence[str]) -> None:
 class Notice(UserWarning):
     """Something of the data was chosen automatically, or is not drawn."""
 
+    #: Arguments that draw something else; the text has them as they are typed in Python.
+    remedies: tuple[Remedy, ...] = ()
 
-def notify(text: str, kind: type[Warning] = Notice) -> None:
+
+def notify(text: str, kind: type[Warning] = Notice, remedies: Sequence[Remedy] = ()) -> None:
     """Warn at the line that called the package, however deep the call stack is."""
     level = 2
     frame = sys._getframe(1)
     while frame.f_back is not None and frame.f_code.co_filename.startswith(str(_PACKAGE)):
         level = level + 1
         frame = frame.f_back
-    warnings.warn(text, kind, stacklevel=level)
+    warning = kind(text)
+    if isinstance(warning, Notice):
+        warning.remedies = tuple(remedies)
+    warnings.warn(warning, stacklevel=level)
 
 
 def import_extra(module: str, extra: str) -> Any:

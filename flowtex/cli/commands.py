@@ -34,6 +34,7 @@ from flowtex.cli.options import ServeFlags, UsageError
 from flowtex.cli.serve import pyramid, serve
 from flowtex.cli.write import export, formula, movie, render
 from flowtex.errors import FieldError, Notice
+from flowtex.remedies import for_shell
 from flowtex.rendering import diagnostics
 
 if TYPE_CHECKING:
@@ -139,7 +140,7 @@ def _print_warnings() -> None:
 def _warn(message: Warning | str, category: type[Warning], *_: Any) -> None:
     """Print a warning without the line of code that it came from, or a notice on the data."""
     if issubclass(category, Notice):
-        say((str(message), "dim"))
+        say((for_shell(str(message), getattr(message, "remedies", ())), "dim"))
     elif not category.__module__.startswith("xarray."):  # how a file was written
         if not isinstance(message, Warning):
             message = UserWarning(message)

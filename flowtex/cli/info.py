@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 from flowtex._util.terminal import terminal
 from flowtex.cli.console import load_field
 from flowtex.cli.options import FILE, FLAT, FieldFlags, UsageError, arguments
+from flowtex.remedies import for_shell
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -245,7 +246,7 @@ def _field_table(field: FlowField, *, has_reading: bool = False) -> Table:
     table = _pairs(rows, title)
     if not has_reading:
         for step in field.reading:
-            table.add_row(step.step, step.text)
+            table.add_row(step.step, for_shell(step.text, step.remedies))
     return table
 
 

@@ -26,6 +26,7 @@ from flowtex.cli.options import (
 from flowtex.examples import NAMES
 from flowtex.field.earth.projection import GLOBE
 from flowtex.field.formula.make import KNOWN
+from flowtex.field.options import OF_EARTH, OF_UNITS
 
 if TYPE_CHECKING:
     from flowtex.app import Library
@@ -40,7 +41,7 @@ FIRST_LOOKS: dict[str, tuple[float, tuple[float, ...] | None]] = {
 #: Options that change the field of a file; the others choose a part of it.
 FIELD_OPTIONS = (
     *("slice", "contour", "periodic", "time", "sign_free", "preference"),
-    *("projection", "globe", "level", "sel", "isel", "mask", "components", "direction", "max_edge"),
+    *(*OF_EARTH, "mask", "components", *OF_UNITS),
 )
 
 FILE = Annotated[

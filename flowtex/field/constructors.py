@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Self, cast
 
 from flowtex.errors import require_pyvista
 from flowtex.field.field_arrays import FieldArrays
-from flowtex.field.options import OF_DATASETS, OF_MESHES, FieldOptions, accepts_options
+from flowtex.field.options import OF_BOTH, OF_DATASETS, OF_MESHES, FieldOptions, accepts_options
 from flowtex.field.uncertainty import UNCERTAINTY, with_uncertainty
 from flowtex.field.validation import with_gaps
 
@@ -36,7 +36,7 @@ class FieldConstructors:
         raise NotImplementedError
 
     @classmethod
-    @accepts_options(FieldOptions, names=("vectors", *OF_MESHES, "uncertainty"), settings=False)
+    @accepts_options(FieldOptions, names=("vectors", *OF_MESHES, *OF_BOTH), settings=False)
     def from_pyvista(cls, mesh: Any, *, name: str = "", **options: Any) -> Self:
         """Make a field from a PyVista mesh, or from a series of them.
 
@@ -88,6 +88,10 @@ class FieldConstructors:
         preference
             The array to read where points and cells have one of the same name: ``"point"``, the
             default, or ``"cell"``.
+        mask
+            ``False`` to draw vectors with a fill value, such as -999, too.
+        length_unit, time_unit, velocity_unit
+            Units of the positions, the times and the velocity, for legends and scale bars.
         uncertainty
             As for :meth:`from_xarray`: a scalar, or an array with a value for each node.
 
@@ -173,8 +177,10 @@ class FieldConstructors:
             Numbers count from 0 and include only blocks with cells.
         components
             As for :meth:`from_pyvista` and :meth:`from_xarray`.
-        projection, globe, level, sel, isel, mask, direction, max_edge
+        projection, globe, level, sel, isel, dims, direction, max_edge
             As for :meth:`from_xarray`, for gridded data and models.
+        mask, length_unit, time_unit, velocity_unit
+            As for :meth:`from_pyvista` and :meth:`from_xarray`.
         uncertainty
             As for :meth:`from_xarray`; of a mesh a scalar.
 
@@ -255,8 +261,16 @@ class FieldConstructors:
             Directions of the components: ``"earth"`` for eastward and northward, ``"grid"`` for
             along rows and columns, ``"plane"`` for along x and y, ``"polar"`` for away from the
             origin and around it, ``"spherical"`` for southward and eastward, along the colatitude
-            and the longitude. By default the names of the variables and the grid decide;
+            and the longitude. The angle of a speed is ``"from"`` where the flow comes, ``"to"``
+            where it goes, both clockwise from north, or an ``"angle"`` counterclockwise from x. By
+            default the names of the variables and the grid decide;
             ``field.reading.of("components")`` names the rule.
+        dims
+            Coordinates that are drawn across and upward, such as ``"lon,lat"``. By default their
+            names and attributes decide.
+        length_unit, time_unit, velocity_unit
+            Units in place of those in the data: of x and y, of times that are numbers, and of the
+            velocity.
         direction
             Name of the direction of a speed, as in ``vectors="ff", direction="dd"``. Its names and
             attributes decide whether the flow comes from there or goes there, clockwise from north,

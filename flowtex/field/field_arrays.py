@@ -13,6 +13,7 @@ from typing import Any, NamedTuple
 from numpy.typing import ArrayLike
 
 from flowtex.field.earth.projection import Projection
+from flowtex.remedies import Remedy
 
 #: Share of the flow normal to the surface from which on the speed in it has another name. A curved
 #: mesh alone has 1 or 2 %; at 5 % the speeds differ by a thousandth.
@@ -37,6 +38,7 @@ class ReadingStep(NamedTuple):
     text: str
     notable: bool = False  #: Whether it is a choice that users must know: it is issued as a notice.
     caption: str = ""  #: Text for captions, such as ``"500 hPa"``.
+    remedies: tuple[Remedy, ...] = ()  #: Arguments that draw something else, as the text has them.
 
 
 class Reading(tuple[ReadingStep, ...]):

@@ -21,10 +21,14 @@ from flowtex.errors import FieldError
 #: Description of all other arguments in docstrings.
 SETTINGS_TEXT = "Any setting of :class:`~flowtex.Settings`, such as ``samples=25``."
 #: Arguments for geospatial data only.
-OF_EARTH = ("projection", "globe", "level", "sel", "isel", "mask", "direction", "max_edge")
+OF_EARTH = ("projection", "globe", "level", "sel", "isel", "dims", "direction", "max_edge")
 #: Arguments for meshes only.
 OF_MESHES = ("plane", "slice", "contour", "block", "times", "periodic", "sign_free", "preference")
-OF_DATASETS = ("vectors", *OF_EARTH, "components", "uncertainty")  #: Arguments for datasets.
+#: Arguments for the units of data that have none, or other ones.
+OF_UNITS = ("length_unit", "time_unit", "velocity_unit")
+#: Arguments for meshes and datasets.
+OF_BOTH = ("mask", "components", *OF_UNITS, "uncertainty")
+OF_DATASETS = ("vectors", *OF_EARTH, *OF_BOTH)  #: Arguments for datasets.
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
@@ -85,18 +89,35 @@ class FieldOptions:
     mask: str | bool | None = option(
         None,
         "Variable of a dataset that marks where there is data; by default masks of common names, "
-        "quality flags and undeclared fill values count. ``False`` draws all values.",
+        "quality flags and undeclared fill values count. ``False`` draws all values, also fill "
+        "values of a mesh.",
+    )
+    dims: str | None = option(
+        None,
+        "Coordinates of a dataset that are drawn across and upward, such as ``lon,lat``; by "
+        "default their names and attributes decide.",
+    )
+    length_unit: str | None = option(
+        None, "Unit of x and y, such as ``km``, in place of the one in the data."
+    )
+    time_unit: str | None = option(
+        None, "Unit of times that are numbers, such as ``h``, in place of the one in the data."
+    )
+    velocity_unit: str | None = option(
+        None, "Unit of the velocity, such as ``cm/s``, in place of the one in the data."
     )
     components: str | None = option(
         None,
         'Directions of the components: ``"polar"``, ``"cylindrical"`` (radius, angle, z) or '
         '``"spherical"`` (radius, colatitude, longitude); of a dataset also ``"earth"`` (eastward, '
-        'northward), ``"grid"`` (along rows and columns) or ``"plane"`` (along x and y). By '
-        "default the names decide.",
+        'northward), ``"grid"`` (along rows and columns) or ``"plane"`` (along x and y). Of a '
+        'speed and a direction ``"from"`` or ``"to"`` (where the flow comes from or goes to, '
+        'clockwise from north) or ``"angle"`` (counterclockwise from x). By default the names '
+        "decide.",
     )
     direction: str | None = option(
         None,
-        "Variable of a dataset with the direction of a speed, which ``vectors`` names. Its "
+        "Variable with the direction of a speed, which ``vectors`` names. Its "
         "attributes decide whether it is where the flow comes from or goes to, clockwise from "
         "north, or an angle counterclockwise from x.",
     )

@@ -8,6 +8,7 @@ from itertools import product
 from typing import Any
 
 from flowtex.errors import FieldError, import_extra
+from flowtex.remedies import Remedy
 
 #: Texts of data without a unit, also numbers of levels.
 NONE = ("", "1", "-", "none", "unknown", "n/a", "dimensionless", "level", "levels", "layer")
@@ -86,6 +87,19 @@ def factor(unit: str, other: str) -> float | None:
     if one is None or two is None or one.dimensionality != two.dimensionality:
         return None
     return float(registry().Quantity(1.0, one).to(two).magnitude)
+
+
+def unit_remedy(name: str, assumed: str) -> Remedy:
+    """Return the argument for another unit than the assumed one, by its name."""
+    length = assumed.partition("/")[0]
+    others = {"length_unit": ("km", "m"), "time_unit": ("h", "s"), "velocity_unit": ("km/h", "m/s")}
+    if name == "velocity_unit" and length not in ("m", "km"):
+        other = f"{length}/h"
+    elif assumed == others[name][0]:
+        other = others[name][1]
+    else:
+        other = others[name][0]
+    return Remedy(name, other, "for another unit,")
 
 
 def symbol(text: str) -> str:

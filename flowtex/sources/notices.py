@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from typing import Any
 
 from flowtex import errors
 from flowtex.errors import FieldError, Notice
 from flowtex.field.field_arrays import STEPS, Reading, ReadingStep
+from flowtex.remedies import Remedy, sentence
 
 #: Entry of a dataset's encoding with a sentence for the record of its reading.
 NOTE = "flowtex_note"
@@ -28,9 +29,9 @@ class DatasetNotice(Notice):
     """
 
 
-def notify(text: str) -> None:
+def notify(text: str, remedies: Sequence[Remedy] = ()) -> None:
     """Warn at the line that called the package."""
-    errors.notify(text, DatasetNotice)
+    errors.notify(text, DatasetNotice, remedies)
 
 
 def notify_section(section: Any) -> None:
@@ -46,15 +47,31 @@ class Record:
     """Sentences about a reading, in the order of :data:`flowtex.field.field_arrays.STEPS`.
 
     Each step of a pipeline gets the record, and adds what it did:
-    ``record("align", "v: latitude reversed to match u")``.
+    ``record("align", "v: latitude reversed to match u")``. A choice has a :class:`Remedy`, from
+    which each front end makes text that can be typed.
     """
 
     def __init__(self) -> None:
-        self._steps: dict[ReadingStep, None] = {}
+        self._steps: list[ReadingStep] = []
 
-    def __call__(self, step: str, text: str, *, notable: bool = False, caption: str = "") -> None:
-        """Add a sentence once; a notable one is issued as a notice by :meth:`notify`."""
-        self._steps[ReadingStep(step, text, notable, caption)] = None
+    def __call__(
+        self,
+        step: str,
+        text: str,
+        *remedies: Remedy,
+        notable: bool = False,
+        caption: str = "",
+    ) -> None:
+        """Add a sentence once; a notable one is issued as a notice by :meth:`notify`.
+
+        The remedies are the arguments by which users draw something else.
+        """
+        whole = sentence(text, remedies)
+        for number, known in enumerate(self._steps):
+            if known.text == whole:
+                self._steps[number] = known._replace(notable=known.notable or notable)
+                return
+        self._steps.append(ReadingStep(step, whole, notable, caption, remedies))
 
     @property
     def reading(self) -> Reading:
@@ -65,7 +82,7 @@ class Record:
         """Issue the notable sentences as notices, at the line that called the package."""
         for item in self.reading:
             if item.notable:
-                notify(item.text)
+                notify(item.text, item.remedies)
 
     @contextmanager
     def explain(self) -> Iterator[None]:

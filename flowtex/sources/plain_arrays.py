@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 #: Arguments that have no meaning for arrays.
 NOT_OF_ARRAYS = (
     *("plane", "slice", "contour", "block", "preference"),
-    *("level", "sel", "isel", "mask"),
+    *("level", "sel", "isel", "dims", "mask"),
 )
 #: Names of the positions, in small letters.
 PLACES = (("x", "y", "z"), ("x", "y"))
@@ -110,8 +110,9 @@ def _field(
         periodic=options.periodic,
         sign_free=bool(options.sign_free),
         scalars=scalars,
-        length_unit=flow.length_unit,
-        velocity_unit=flow.velocity_unit,
+        length_unit=options.length_unit or flow.length_unit,
+        time_unit=options.time_unit or "",
+        velocity_unit=options.velocity_unit or flow.velocity_unit,
     )
 
 

@@ -20,7 +20,9 @@ from flowtex.errors import FieldError, Notice, notify
 from flowtex.field.dates import date_of, written_date
 from flowtex.field.earth.projection import Projection
 from flowtex.field.field import FlowField
+from flowtex.field.field_arrays import Reading, ReadingStep
 from flowtex.field.steps import LazySteps, Steps
+from flowtex.remedies import Remedy
 from flowtex.sources.meshes.separate import end_of_reader, time_limit
 from flowtex.sources.notices import DatasetNotice
 from flowtex.sources.open_source import FlowSource, open_source
@@ -79,7 +81,9 @@ class Reader:
         warned = []
         for warning in caught:
             if issubclass(warning.category, UserWarning):
-                warned.append([warning.category.__name__, str(warning.message)])
+                remedies = getattr(warning.message, "remedies", ())
+                packed = [remedy.packed() for remedy in remedies]
+                warned.append([warning.category.__name__, str(warning.message), packed])
         return {"value": value, "warnings": warned}, arrays
 
     def do_open(self, paths: list[str]) -> Answer:
@@ -134,6 +138,10 @@ def pack_field(
     value["arrays"] = {name: packed(getattr(field, name)) for name in ARRAYS}
     for group in NAMED_ARRAYS:
         value[group] = {name: packed(array) for name, array in getattr(field, group).items()}
+    value["reading"] = []
+    for step in field.reading:
+        remedies = [remedy.packed() for remedy in step.remedies]
+        value["reading"].append([step.step, step.text, step.notable, step.caption, remedies])
     value["start"] = written_date(field.start)
     value["projection"] = field.projection and field.projection.written
     return value, arrays
@@ -156,7 +164,12 @@ def unpack_field(
     values["periodic"] = (bool(value["periodic"][0]), bool(value["periodic"][1]))
     for group in NAMED_ARRAYS:
         values[group] = {name: unpacked(packed) for name, packed in value[group].items()}
+    reading = []
+    for step, text, notable, caption, packed in value["reading"]:
+        remedies = tuple(Remedy(*values) for values in packed)
+        reading.append(ReadingStep(step, text, notable, caption, remedies))
     field = FlowField(
+        reading=Reading(reading),
         **{name: unpacked(value["arrays"][name]) for name in ARRAYS},
         **values,
         start=date_of(value["start"]),
@@ -277,8 +290,9 @@ class _OpenFile:
             raise FieldError(self._fault(error)) from error
         except (TypeError, KeyError) as error:
             raise FieldError(self.malformed(error)) from error
-        for kind, text in warned:
-            notify(str(text), WARNINGS.get(kind, UserWarning))
+        for kind, text, packed in warned:
+            remedies = [Remedy(*values) for values in packed]
+            notify(str(text), WARNINGS.get(kind, UserWarning), remedies)
         return value, arrays
 
     def field(self, options: dict[str, Any]) -> FlowField:

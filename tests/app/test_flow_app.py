@@ -90,3 +90,24 @@ def test_a_file_that_cannot_be_drawn_does_not_hide_the_others(tmp_path: Path) ->
         first_choice(Library.of(tmp_path), {})
     write_flow(tmp_path / "c.vti")
     assert first_choice(Library.of(tmp_path), {})[0] == "c.vti"
+
+
+def test_page_reports_choices_beyond_its_controls(tmp_path: Path) -> None:
+    """The controls show array and plane; fill values have a flag of the command line."""
+    box = pv.ImageData(dimensions=(6, 5, 4))
+    values = np.tile([1.0, 2.0, 0.0], (box.n_points, 1))
+    values[:40] = -999.0
+    box["wind"] = values
+    box["force"] = values * 2
+    box.save(tmp_path / "box.vti")
+    app = small_page(tmp_path / "box.vti")
+    texts = app.state.get("choices")
+    app.close()
+    assert len(texts) == 1
+    assert texts[0].endswith("; to draw these values too, --mask none")
+
+
+def test_page_of_arrays_reports_nothing() -> None:
+    app = small_page(small())
+    assert app.state.get("choices") == []
+    app.close()

@@ -368,3 +368,16 @@ def test_a_formula_is_drawn_and_its_errors_are_told(run: Run, tmp_path: Path) ->
     }.items():
         code, _, err = run("formula", "y", "x", wrong, "-o", picture)
         assert code == 2 and told in err
+
+
+def test_choices_are_told_once_as_flags(run: Run, block: Path, tmp_path: Path) -> None:
+    """What a command says can be typed after it."""
+    target = tmp_path / "block.png"
+    words = ("render", block, "-o", target, "--vectors", "wind", "--size", "40x30")
+    code, out, _ = run(*words)
+    told = "choose another, as in --plane j=2, or cut anywhere, as in --slice z"
+    assert code == 0
+    assert out.count(told) == 1
+    for flags in (("--plane", "j=2"), ("--slice", "z")):
+        code, out, _ = run(*words, *flags)
+        assert code == 0 and "choose another" not in out

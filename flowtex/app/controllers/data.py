@@ -6,7 +6,7 @@ page stays until another one can replace it.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import asdict, astuple
 from functools import partial
 from pathlib import Path
@@ -27,6 +27,7 @@ from flowtex.app.streaming.viewport import first_time, time_in
 from flowtex.errors import FieldError
 from flowtex.field import FlowField
 from flowtex.field.formula.make import is_line, same_formula, with_parameter
+from flowtex.remedies import for_page
 from flowtex.sources.open_source import FlowSource
 
 
@@ -177,7 +178,7 @@ class Data(FlowOpener):
         """Send the controls of the shown flow; while another one opens, only its name."""
         values = {"file": self.name, **self._options()}
         if self._goal != (self.name, self.choice):
-            values = {"name": values["name"], "about": values["about"]}
+            values = {name: values[name] for name in ("name", "about", "choices")}
         self.state.send(busy="", **values)
 
     def _requested(self) -> Choice:
@@ -237,6 +238,7 @@ class Data(FlowOpener):
             "is_file": self.library.is_file(self.name),
             "name": (field.name or source.name).replace("_", " ") or "flow",
             "about": about(field),
+            "choices": choices_of(field, _controls(source, part)),
             "vectors_choices": vectors_choices,
             "vectors": self.choice.vectors or next(iter(part.vectors), ""),
             "blocks": list(source.blocks),
@@ -265,6 +267,29 @@ class Data(FlowOpener):
 
 def _axis(plane: str) -> str:
     return plane.partition("=")[0]
+
+
+def _controls(source: FlowSource, part: FlowSource) -> dict[str, str]:
+    """Return the names of the controls that a page has for a part, by the arguments they set."""
+    controls: dict[str, str] = {}
+    if part.planes:
+        controls |= dict.fromkeys(("plane", "slice", "level", "sel", "isel"), "Plane")
+    if len(part.vectors) > 1:
+        controls["vectors"] = "Velocity"
+    if source.blocks:
+        controls["block"] = source.block_word
+    if source.block_word == "Map":
+        controls["globe"] = "Map"
+    return controls
+
+
+def choices_of(field: FlowField, controls: Mapping[str, str]) -> list[str]:
+    """Return what was chosen for a field, and how to choose otherwise on a page."""
+    texts = []
+    for step in field.reading:
+        if step.notable:
+            texts.append(for_page(step.text, step.remedies, controls))
+    return texts
 
 
 def about(field: FlowField) -> str:

@@ -115,10 +115,13 @@ def common(
             f"{u.name} and {v.name} have no {dim} in common: {u.name} has {labels.text(one)}, and "
             f"{v.name} {labels.text(other)}. Give both at the same {dim}"
         )
+    left_out = []
     for array, line in ((u, one), (v, other)):
         if len(found.one) < len(np.unique(line[line == line])):
-            text = f"{dim}: {len(line) - len(found.one)} of {len(line)} of {array.name} are left "
-            record("align", text + "out, as only one component has them", notable=True)
+            left_out.append(f"{len(line) - len(found.one)} of {len(line)} of {array.name}")
+    if left_out:
+        text = f"{dim}: {' and '.join(left_out)} are left out, as only one component has them"
+        record("align", text, notable=True)
     if len(found.other) > 1 and (np.diff(found.other) < 0).all():
         record("align", f"{v.name}: {dim} reversed to match {u.name}")
     return found

@@ -15,6 +15,7 @@ from flowtex.errors import FieldError
 from flowtex.field import units
 from flowtex.field.dates import as_seconds, span_since
 from flowtex.field.options import FieldOptions
+from flowtex.remedies import Remedy
 from flowtex.sources.datasets import labels
 from flowtex.sources.datasets.levels import LEVELS, pressure_unit, surface_level
 from flowtex.sources.notices import Record
@@ -32,6 +33,8 @@ NODES = "mesh_nodes"
 FACES = "mesh_faces"
 #: Names of the dimensions of rows and columns of a vertical section.
 SECTION = ("y_of_section", "x_of_section")
+#: A number and its unit.
+_WITH_UNIT = re.compile(r"([-+]?[\d.]+(?:e[-+]?\d+)?)\s*([^\d\s].*|)", re.IGNORECASE)
 #: Word for a choice along a vertical axis, beside its name.
 LEVEL = "level"
 #: Word for a choice of a time.
@@ -45,6 +48,7 @@ class Choice:
     sel: Mapping[str, Any] = field(default_factory=dict)
     isel: Mapping[str, Any] = field(default_factory=dict)
     used: set[str] = field(default_factory=set)
+    time_unit: str | None = None  #: Unit of times that are numbers, which the user names.
 
     @classmethod
     def of(cls, options: FieldOptions) -> Choice:
@@ -53,7 +57,8 @@ class Choice:
             level = {}
         else:
             level = {LEVEL: options.level}
-        return cls({**(options.sel or {}), **level}, dict(options.isel or {}))
+        sel = {**(options.sel or {}), **level}
+        return cls(sel, dict(options.isel or {}), time_unit=options.time_unit)
 
     def check(self, names: set[str], drawn: set[str]) -> None:
         """Check that each selected axis exists, and is not drawn.
@@ -278,9 +283,12 @@ def choose(array: xr.DataArray, choice: Choice, record: Record) -> Drawn:
         line = line_of(array, dim)
         drawn = _drawn(kind, dim, line, array, choice, record)
         if kind == TIME and line is not None:
-            times, unit, drawn = _steps(line, array, dim, drawn, record)
+            unit = choice.time_unit or _unit(array, dim)
+            times, unit, drawn = _steps(line, unit, dim, drawn, record)
         elif kind == LEVEL and line is not None and isinstance(drawn, int):
             level = _level_text(line[drawn], array, dim)
+        elif line is not None and isinstance(drawn, int) and {dim, kind} & {*choice.used}:
+            record("select", f"{dim}: {_value_text(line[drawn], array, dim)}")
         axes.append(Axis(kind, dim, line, drawn))
     choice.check({*kinds, *kinds.values()}, set(horizontal_dims(array)))
     # What was selected before is a scalar.
@@ -296,14 +304,14 @@ def choose(array: xr.DataArray, choice: Choice, record: Record) -> Drawn:
 
 
 def _steps(
-    line: AnyArray, array: xr.DataArray, dim: str, drawn: int | list[int], record: Record
+    line: AnyArray, own_unit: str, dim: str, drawn: int | list[int], record: Record
 ) -> tuple[AnyArray | None, str, int | list[int]]:
     """Return dates or numbers of the drawn steps, their unit, and their numbers, in order."""
     chosen = np.atleast_1d(drawn)
     times = line[chosen]
     unit = ""
     if times.dtype.kind in "fiu":
-        unit = _unit(array, dim)
+        unit = own_unit
         if (seconds := units.factor(unit, "s")) is not None:
             times = times * seconds
             unit = "s"
@@ -427,8 +435,10 @@ def _drawn(
                 )
             if kind == TIME and isinstance(target, slice):
                 return _within(target, line, name)
-            is_longitude = dim.lower().startswith("lon") or _unit(array, dim).endswith("_east")
-            return _nearest(target, line, name, is_longitude=is_longitude)
+            unit = value_unit(array, dim)
+            target = _in_unit(target, line, unit)
+            is_longitude = dim.lower().startswith("lon") or unit.endswith("_east")
+            return _nearest(target, line, name, unit, is_longitude=is_longitude)
     if kind == TIME and line is not None and line.dtype.kind in "mMOfiu":
         return list(range(count))
     if kind == TIME and line is not None and count > 1:
@@ -438,25 +448,72 @@ def _drawn(
         )
     if count == 1:
         return 0
+    return _by_default(kind, dim, line, array, record)
+
+
+def _by_default(
+    kind: str, dim: str, line: AnyArray | None, array: xr.DataArray, record: Record
+) -> int:
+    """Return the number that is drawn along an axis without a choice, and record it."""
+    count = array.sizes[dim]
     if kind == LEVEL and line is not None and line.dtype.kind in "fiu":
         number = surface_level(coordinate_of(array, dim), line, array)
         reason = "the nearest to the surface"
     else:
         number, reason = 0, "the first"
     other = 0 if number else count - 1
-    description, example = f"number {number}", f"isel={{{dim!r}: {other}}}"
-    if line is not None:
+    if line is None:
+        description = f"number {number}"
+        remedy = Remedy("isel", {dim: other})
+    else:
         description = _value_text(line[number], array, dim)
-        text = f"{line[other]:g}" if line.dtype.kind in "fiu" else repr(str(line[other]))
-        example = f"level={text}" if kind == LEVEL else f"sel={{{dim!r}: {text}}}"
-    text = f"{dim} is {description}, {reason} of {count} values; choose another, as in {example}"
-    record("select", text, notable=True)
+        remedy = _remedy(kind, dim, typed_value(line[other], value_unit(array, dim)))
+    text = f"{dim} is {description}, {reason} of {count} values"
+    record("select", text, remedy, notable=True)
     return number
 
 
-def _nearest(target: Any, line: AnyArray, name: str, *, is_longitude: bool) -> int:
+def _remedy(kind: str, dim: str, value: Any) -> Remedy:
+    """Return the argument that selects a value along an axis."""
+    if kind == LEVEL:
+        return Remedy("level", value)
+    return Remedy("sel", {dim: value})
+
+
+def typed_value(value: Any, unit: str = "") -> float | str:
+    """Return a label as users type it: a number, a number with its unit, or a text."""
+    if isinstance(value, np.timedelta64):
+        return f"{value / np.timedelta64(1, 'h'):.9g} h"
+    if not isinstance(value, (int, float, np.number)):
+        return str(value)
+    number = float(f"{value:.9g}")
+    if unit and units.parsed(unit) is not None:
+        return f"{number:.9g} {unit}"
+    if number.is_integer():
+        return int(number)
+    return number
+
+
+def _in_unit(target: Any, line: AnyArray, unit: str) -> Any:
+    """Return a text such as ``"250 hPa"`` as the number in the unit of an axis, if it is one."""
+    if line.dtype.kind == "m":
+        unit = "s"
+    found = _WITH_UNIT.fullmatch(target.strip()) if isinstance(target, str) else None
+    if found is None or line.dtype.kind not in "mfiu":
+        return target
+    number = float(found[1])
+    given = found[2]
+    if given in ("", unit):
+        return number
+    factor = units.factor(given, unit)
+    if factor is None:
+        return target
+    return number * factor
+
+
+def _nearest(target: Any, line: AnyArray, name: str, unit: str, *, is_longitude: bool) -> int:
     """Return the number of the value nearest to a target, within the ends of the axis."""
-    msg = f"{name} is {target!r}; expected one of {labels.text(line)}"
+    msg = f"{name} is {target!r}; expected one of {labels.text(line)} {unit}".rstrip()
     try:
         at, (begin, end) = _places(line, target)
     except (TypeError, ValueError, AttributeError) as error:
@@ -515,13 +572,18 @@ def _unit(array: xr.DataArray, dim: str) -> str:
     return str(coordinate.attrs.get("units", ""))
 
 
-def _value_text(value: Any, array: xr.DataArray, dim: str) -> str:
+def value_unit(array: xr.DataArray, dim: str) -> str:
+    """Return the unit of the labels along an axis, also that of pressures that have none."""
     unit = _unit(array, dim)
     if not unit and dim in array.coords and axis_kind(array, dim) == LEVEL:
         unit = pressure_unit(array.coords[dim])
     if unit.lower() in units.NONE:
-        unit = ""
-    return f"{value_word(value)} {unit}".strip()
+        return ""
+    return unit
+
+
+def _value_text(value: Any, array: xr.DataArray, dim: str) -> str:
+    return f"{value_word(value)} {value_unit(array, dim)}".strip()
 
 
 def value_word(value: Any) -> str:

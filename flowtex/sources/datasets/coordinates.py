@@ -13,8 +13,16 @@ from flowtex._util.array_types import Floats
 from flowtex.errors import FieldError, import_extra
 from flowtex.field import units
 from flowtex.field.earth.projection import GLOBE, Projection
+from flowtex.remedies import Remedy
 from flowtex.sources.datasets import labels
-from flowtex.sources.datasets.axes import TIME, Drawn, axis_kind, coordinate_of, horizontal_dims
+from flowtex.sources.datasets.axes import (
+    LEVEL,
+    TIME,
+    Drawn,
+    axis_kind,
+    coordinate_of,
+    horizontal_dims,
+)
 from flowtex.sources.datasets.curved import ANGLES, AZIMUTHS, RADII
 from flowtex.sources.notices import Record
 from flowtex.sources.reader_errors import values_in
@@ -148,7 +156,7 @@ def find_places(
     FieldError
         When no dataset has positions for these dimensions.
     """
-    datasets, drawn, _ = beside
+    datasets, drawn, record = beside
     shape = tuple(_size(d, array, datasets) for d in dims)
     found = _on_earth(array, dims, shape, beside)
     if found is not None:
@@ -161,7 +169,10 @@ def find_places(
         return cells
     lines = [_own_line(array, d, datasets) for d in dims]
     if any_axes and lines[0] is not None and lines[1] is not None:
-        return _of_lines(lines[1], lines[0])
+        places = _of_lines(lines[1], lines[0])
+        if places.angle is None and not any(axis_kind(array, d) in (LEVEL, TIME) for d in dims):
+            _record_axes(lines[1], lines[0], record)
+        return places
     _check_two_of_space(array, dims)
     names = sorted({str(n) for n in array.coords} | {str(n) for ds in datasets for n in ds.coords})
     raise FieldError(
@@ -208,6 +219,17 @@ def _on_earth(
         elif is_line and places.is_near(found):
             return places
     return found
+
+
+def _record_axes(x: xr.DataArray, y: xr.DataArray, record: Record) -> None:
+    """Record which of two axes is drawn across, unless their attributes or names tell."""
+    if x.attrs.get("axis") == "X" or y.attrs.get("axis") == "Y":
+        return
+    if ACROSS.match(str(x.name)) or UPWARD.match(str(y.name)):
+        return
+    text = f"{x.name} is drawn across and {y.name} upward, though their names do not tell"
+    exchanged = Remedy("dims", f"{y.name},{x.name}", "to exchange them,")
+    record("coordinates", text, exchanged, notable=True)
 
 
 def _check_two_of_space(array: xr.DataArray, dims: tuple[str, ...]) -> None:
@@ -272,7 +294,7 @@ def ordered(array: xr.DataArray, record: Record, step: str) -> xr.DataArray:
         values = np.asarray(line.values, dtype=float)
         known = np.isfinite(values)
         if known.any() and not known.all():
-            text = f"{array.name}: {(~known).sum()} of {known.size} {dim} are NaN, and left out"
+            text = f"{dim}: {(~known).sum()} of {known.size} values are NaN, and left out"
             record(step, text, notable=True)
             array = array.isel({dim: known})
             values = values[known]

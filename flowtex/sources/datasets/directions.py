@@ -27,6 +27,15 @@ TOWARDS = "direction towards"
 #: Kinds whose second variable is an angle.
 ANGULAR = (ANGLE, FROM, TOWARDS)
 
+#: Kinds by the words for them in ``components=``.
+BY_WORD = {"angle": ANGLE, "from": FROM, "to": TOWARDS}
+#: Meanings of these words.
+MEANINGS = {
+    "angle": "an angle from x, counterclockwise",
+    "from": "a direction from which the flow comes, clockwise from north",
+    "to": "a direction to which the flow goes, clockwise from north",
+}
+
 #: Names of directions.
 TURNS = re.compile(r"(^|_)(direction|dir)(_\w+)?$|^w(d|dir)\w*$|^dir\w*$", re.I)
 #: Names of angles that are not names of directions.

@@ -32,6 +32,7 @@ from flowtex.errors import FieldError
 from flowtex.field import units
 from flowtex.field.options import FieldOptions
 from flowtex.field.steps import typical_steps
+from flowtex.remedies import Remedy
 from flowtex.sources.datasets import directions, labels, select
 from flowtex.sources.datasets.align import align
 from flowtex.sources.datasets.axes import (
@@ -48,15 +49,17 @@ from flowtex.sources.datasets.axes import (
 )
 from flowtex.sources.datasets.coordinates import LATITUDE, LONGITUDE, Beside, Places, ordered
 from flowtex.sources.datasets.curved import with_lonlat
-from flowtex.sources.datasets.masks import Mask, find_masks, is_constant, moves_over_land
+from flowtex.sources.datasets.masks import DRAW_ALL, Mask, find_masks, is_constant, moves_over_land
 from flowtex.sources.datasets.select import Pair
 from flowtex.sources.datasets.staggered import find_grid, lies_in, unrepeated
 from flowtex.sources.datasets.values import (
     Component,
+    FillWords,
     Values,
     checked_component,
     examined,
     read_step,
+    record_fills,
     steps_to_examine,
 )
 from flowtex.sources.datasets.vertical import is_vertical
@@ -82,6 +85,8 @@ CURVED = {
 MODELS = re.compile(r"XLONG|nav_lon|lon_(rho|u|v|psi)\b|glam|[TU]_?LONG?|XC|XG|geolon")
 #: Greatest angle in radians.
 MOST_RADIANS = 2 * np.pi + 1e-3
+#: The other directions of components that are taken along the grid.
+EASTWARD = Remedy("components", "earth", "if they are eastward and northward,")
 #: The reason where neither names nor positions tell.
 UNKNOWN = "a curvilinear grid, and no name that tells"
 #: Sine of the angle between rows and parallels from which on the directions matter.
@@ -126,8 +131,8 @@ def component_units(pair: Pair, record: Record) -> tuple[str, tuple[float, float
             else:
                 named = pair.v
                 bare = pair.u
-            text = f"{bare.name} has no unit; that of {named.name}, {one or other}, is assumed"
-            record("units", text, notable=True)
+            text = f"{bare.name} has no unit, and that of {named.name}, {one or other}, is assumed"
+            record("units", text, units.unit_remedy("velocity_unit", one or other), notable=True)
         return one or other, (1.0, 1.0)
     factor = units.factor(other, one)
     if factor is None:
@@ -167,12 +172,12 @@ def orientation(flow: Flow, wanted: str | None) -> Orientation:
     FieldError
         When ``wanted`` is no known direction, or does not fit the positions.
     """
-    if wanted is not None and wanted not in {*DIRECTIONS, *CURVED}:
-        known = {**DIRECTIONS, **CURVED}
+    known = {**DIRECTIONS, **CURVED, **directions.MEANINGS}
+    if wanted is not None and wanted not in known:
         expected = ", ".join(f"{key!r} ({words})" for key, words in known.items())
         raise FieldError(f"components is {wanted!r}; expected {expected}")
     _check_curved(flow, wanted)
-    if wanted is None:
+    if wanted is None or wanted in directions.BY_WORD:
         found = _orientation(flow)
     elif wanted in CURVED:
         along = "earth"
@@ -376,14 +381,11 @@ def read_flow(data: Any, options: FieldOptions, record: Record) -> Flow:
     datasets = as_datasets(data, record, choice)
     choice.used |= datasets.used
     datasets, pair = _chosen(datasets, choice, options)
-    record("select", f"velocity: {pair}", notable=pair.guessed)
+    _record_pair(pair, datasets, options, record)
     unit, factors = component_units(pair, record)
     one = pair.u
     two = pair.v
-    mesh = find_mesh(datasets)
-    if mesh is not None and len(horizontal_dims(one)) > 1:
-        mesh = None
-    mesh = _with_max_edge(mesh, options.max_edge)
+    mesh = _mesh_of(datasets, one, options.max_edge)
     if mesh is None:
         one = ordered(one, record, "coordinates")
         two = ordered(two, record, "align")
@@ -404,14 +406,37 @@ def read_flow(data: Any, options: FieldOptions, record: Record) -> Flow:
         flow = _on_rows(pair, datasets, drawn, record)
     else:
         flow = _on_faces(mesh, pair, datasets, drawn, record)
+    flow = _in_length_unit(flow, options.length_unit)
     found = orientation(flow, options.components)
     is_curved = flow.places.is_earth and not flow.places.is_line and mesh is None
     if found.along == "grid" and is_curved:
         flow = _right_handed(flow)
     if found.why == UNKNOWN and _is_turned(flow):
         text = f"{pair.u.name} and {pair.v.name} are taken along the grid, which is turned against "
-        record("components", text + "north; components='earth' if they are not", notable=True)
+        record("components", f"{text}north", EASTWARD, notable=True)
     return _masked(replace(flow, unit=unit, orientation=found), factors, options.mask)
+
+
+def _in_length_unit(flow: Flow, unit: str | None) -> Flow:
+    """Return a flow whose positions in a plane have the unit that the user names."""
+    if unit is None or flow.places.is_earth:
+        return flow
+    return replace(flow, places=replace(flow.places, unit=unit))
+
+
+def _record_pair(pair: Pair, datasets: Datasets, options: FieldOptions, record: Record) -> None:
+    """Record the pair of components, and what else it may be."""
+    if pair.guessed:
+        record("select", f"velocity: {pair}", select.other_angle(pair), notable=True)
+        return
+    others: list[str] = []
+    if options.vectors is None and options.direction is None:
+        others = select.likely_others(datasets, pair)
+    if not others:
+        record("select", f"velocity: {pair}")
+        return
+    text = f"velocity: {pair}; other pairs: {'; '.join(others)}"
+    record("select", text, Remedy("vectors", others[0]), notable=True)
 
 
 def _chosen(datasets: Datasets, choice: Choice, options: FieldOptions) -> tuple[Datasets, Pair]:
@@ -426,11 +451,27 @@ def _chosen(datasets: Datasets, choice: Choice, options: FieldOptions) -> tuple[
         datasets = Datasets(map(with_lonlat, datasets), datasets.closers, recognised=True)
     one = select.variable(datasets, str(pair.u.name))
     two = select.variable(datasets, str(pair.v.name))
-    return datasets, replace(pair, u=one, v=two)
+    pair = replace(pair, u=one, v=two)
+    if options.velocity_unit is not None:
+        pair = _in_unit(pair, options.velocity_unit)
+    return datasets, pair
 
 
-def _with_max_edge(mesh: Mesh | None, max_edge: float | str | None) -> Mesh | None:
-    """Return a mesh of points whose triangles have no longer edges."""
+def _in_unit(pair: Pair, unit: str) -> Pair:
+    """Return a pair whose components, or whose speed, have the unit that the user names."""
+    if units.parsed(unit) is None:
+        raise FieldError(f"velocity_unit is {unit!r}; expected a unit such as m/s, cm/s or knots")
+    one = pair.u.assign_attrs(units=unit)
+    if pair.kind in directions.ANGULAR:
+        return replace(pair, u=one)
+    return replace(pair, u=one, v=pair.v.assign_attrs(units=unit))
+
+
+def _mesh_of(datasets: Datasets, one: xr.DataArray, max_edge: float | str | None) -> Mesh | None:
+    """Return the mesh of a variable, of points with edges that are no longer; ``None`` for rows."""
+    mesh = find_mesh(datasets)
+    if mesh is not None and len(horizontal_dims(one)) > 1:
+        mesh = None
     if max_edge is None:
         return mesh
     if mesh is not None and mesh.kind == POINTS:
@@ -471,11 +512,10 @@ def _right_handed(flow: Flow) -> Flow:
     across = flow.places.turned(flow.ahead, ones, zeros)
     upward = flow.places.turned(flow.ahead, zeros, ones)
     names = f"{flow.pair.u.name} and {flow.pair.v.name}"
-    advice = "components='earth' if they are eastward and northward"
     if np.nanmedian(across[0] * upward[1] - across[1] * upward[0]) > 0:
         if np.nanmax(across[0]) < 0 and np.nanmax(upward[1]) < 0:
-            text = f"rows of the grid run southward and columns westward, and {names} along these; "
-            flow.record("components", f"{text}{advice}")
+            text = f"rows of the grid run southward and columns westward, and {names} along these"
+            flow.record("components", text, EASTWARD)
         return flow
     rows, columns = flow.ahead
     turned = "rows"
@@ -485,7 +525,7 @@ def _right_handed(flow: Flow) -> Flow:
     else:
         rows = -rows
     text = f"the {turned} of the grid run backwards, as after [::-1]; {names} are taken along the "
-    flow.record("components", f"{text}grid before that; {advice}", notable=True)
+    flow.record("components", f"{text}grid before that", EASTWARD, notable=True)
     return replace(flow, ahead=(rows, columns))
 
 
@@ -552,7 +592,10 @@ def _on_faces(mesh: Mesh, pair: Pair, datasets: Datasets, drawn: Drawn, record: 
         unit = mesh.unit
     places = Places(mesh.a[None], mesh.b[None], is_earth, is_line=False, why=why, unit=unit)
     record("coordinates", why)
-    record("surface", mesh.words, notable=mesh.kind == POINTS)
+    if mesh.kind == POINTS:
+        record("surface", mesh.words, mesh.other_edge, notable=mesh.max_edge is None)
+    else:
+        record("surface", mesh.words)
     bare = Component(pair.u.variable, 1.0), Component(pair.v.variable, 1.0)
     angle = None
     if pair.kind == directions.POLAR and dim == NODES:
@@ -574,10 +617,13 @@ def _masked(flow: Flow, factors: tuple[float, float], wanted: Any) -> Flow:
         limits = (-turn, turn)
     else:
         limits = None
-    one = checked_component(flow.pair.u, factors[0], axes, wanted, record)
-    two = checked_component(flow.pair.v, factors[1], axes, wanted, record, limits=limits)
+    found: FillWords = {}
+    one = checked_component(flow.pair.u, factors[0], axes, wanted, record, found)
+    two = checked_component(flow.pair.v, factors[1], axes, wanted, record, found, limits=limits)
+    record_fills(found, record)
     flow = replace(flow, values=replace(flow.values, components=(one, two)))
     masks = []
+    hidden: list[str] = []
     for mask in find_masks((flow.pair.u, flow.pair.v), flow.datasets, wanted):
         part_of = flow.beside(mask.array)
         if part_of is None:
@@ -586,9 +632,12 @@ def _masked(flow: Flow, factors: tuple[float, float], wanted: Any) -> Flow:
             text = f"{mask.array.name} lies at other positions or times, and is not used as a mask"
             record("mask", text, notable=mask.array.ndim > 1)
         elif flow.mesh is None or flow.cells[0] in part_of.dims:
-            used = _applied(flow, mask, part_of, wanted)
+            used = _applied(flow, mask, part_of, wanted, hidden)
             if used is not None:
                 masks.append((part_of.variable, used))
+    if hidden:
+        # The flags of both components are one choice.
+        record("mask", "; ".join(hidden), DRAW_ALL, notable=True)
     values = replace(flow.values, masks=tuple(masks))
     if flow.staggered:  # those at rest may be land
         u, v = values.read(_first_moving(flow))
@@ -599,8 +648,13 @@ def _masked(flow: Flow, factors: tuple[float, float], wanted: Any) -> Flow:
     return replace(flow, values=values)
 
 
-def _applied(flow: Flow, mask: Mask, part: xr.DataArray, wanted: Any) -> Mask | None:
-    """Return a mask that hides what it means, turned if need be; ``None`` for one without use."""
+def _applied(
+    flow: Flow, mask: Mask, part: xr.DataArray, wanted: Any, hidden: list[str]
+) -> Mask | None:
+    """Return a mask that hides what it means, turned if need be; ``None`` for one without use.
+
+    ``hidden`` receives the words for what flags of quality hide.
+    """
     axes = flow.values.axes
     variable = part.variable
     marks = []
@@ -619,27 +673,38 @@ def _applied(flow: Flow, mask: Mask, part: xr.DataArray, wanted: Any) -> Mask | 
         values.append(u.ravel())
     is_bad = np.concatenate(marks)
     u = np.concatenate(values)
-    option = f"mask={part.name!r}"
     moves = np.nan_to_num(u) != 0
     if wanted is None and not mask.is_flag and _hides_the_flow(is_bad, moves):
         share = float(np.mean(~is_bad))
         text = f"{mask.text} holds for all that moves, so its opposite is taken: {share:.0%} masked"
-        flow.record("mask", f"{text}; mask=False draws it", notable=True)
+        flow.record("mask", text, DRAW_ALL, notable=True)
         return replace(mask, reverse=not mask.reverse)
     is_wind = mask.is_land and wanted is None and moves_over_land(flow.pair.u)
     if is_wind and (flow.staggered or not is_constant(u[is_bad])):
-        flow.record("mask", f"{mask.text}: not masked, as air moves over land too; {option} masks")
+        masked = Remedy("mask", str(part.name), "to mask it,")
+        flow.record("mask", f"{mask.text}: not masked, as air moves over land too", masked)
         return None
     share = float(np.mean(is_bad))
-    steps = typical_steps(part.shape[0] if part.ndim > axes else 1)
-    read = (read_step(variable, step, axes=axes) for step in steps)
-    if share == 1.0 and wanted is None and not any(mask.is_data(step).any() for step in read):
+    if share == 1.0 and wanted is None and not _has_data(mask, part, axes):
         flow.record("mask", f"{mask.text} everywhere, so {part.name} is not used")
         return None
-    if share:
-        text = f"{share:.0%} masked: {mask.text}; mask=False draws it"
-        flow.record("mask", text, notable=mask.is_flag)
+    text = f"{share:.0%} masked: {mask.text}"
+    if share and mask.is_flag:
+        hidden.append(text)
+    elif share:
+        flow.record("mask", text, DRAW_ALL)
     return mask
+
+
+def _has_data(mask: Mask, part: xr.DataArray, axes: int) -> bool:
+    """Return whether a mask leaves data at one of some steps."""
+    count = 1
+    if part.ndim > axes:
+        count = part.shape[0]
+    for step in typical_steps(count):
+        if mask.is_data(read_step(part.variable, step, axes=axes)).any():
+            return True
+    return False
 
 
 def _first_moving(flow: Flow) -> int:

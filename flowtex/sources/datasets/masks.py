@@ -12,10 +12,13 @@ import numpy as np
 from flowtex._util.arguments import near_names
 from flowtex._util.array_types import AnyArray, Bools, Floats
 from flowtex.errors import FieldError
+from flowtex.remedies import Remedy
 
 if TYPE_CHECKING:
     import xarray as xr
 
+#: The argument that draws the values that masks hide.
+DRAW_ALL = Remedy("mask", value=False, aim="to draw these values too,")
 #: Names of masks that are 1 where there is water, and of those that are 1 on land.
 SEA = re.compile(r"^(mask|mask_?(rho|t|c)|tmask\w*|wet|wet_c|sea_?mask|ocean_?mask)$", re.I)
 LAND = re.compile(r"^(lsm|land|land_?mask|land_sea_mask|mask_?land|xland)$", re.I)

@@ -27,6 +27,7 @@ from flowtex.field.field_arrays import GridArrays, TriangleArrays
 from flowtex.field.options import OF_MESHES, FieldOptions
 from flowtex.field.steps import LazySteps, examined_steps
 from flowtex.field.uncertainty import spread_name
+from flowtex.remedies import Remedy
 from flowtex.sources.datasets import labels, select
 from flowtex.sources.datasets.axes import (
     NODES,
@@ -39,6 +40,7 @@ from flowtex.sources.datasets.axes import (
 from flowtex.sources.datasets.coordinates import LATITUDE, LONGITUDE
 from flowtex.sources.datasets.flow import Flow, read_flow
 from flowtex.sources.datasets.masks import WET
+from flowtex.sources.datasets.named_places import placed_on
 from flowtex.sources.datasets.values import (
     NOTABLE_GAPS,
     LateGaps,
@@ -93,15 +95,13 @@ def read_datasets(
         can be drawn.
     """
     options.refuse(OF_MESHES, "meshes, but this is a dataset")
-    projection = options.projection
+    projection = _projection(options)
     uncertainty = options.uncertainty
     record = Record()
-    if options.globe and projection not in (None, GLOBE):
-        raise FieldError(f"globe=True and projection={projection!r} are given; omit one of them")
-    if options.globe:
-        projection = GLOBE
     u, v = select.two_names(options.vectors)
     datasets = as_datasets(data, record, Choice.of(options))
+    if options.dims is not None:
+        datasets = _on_named(datasets, options.dims)
     with record.explain():
         if u is not None and v is not None and is_section(datasets, u, v):
             section = read_section(datasets, options, record, datasets.close, name=name)
@@ -113,8 +113,8 @@ def read_datasets(
             flow, spread = _averaged(datasets, uncertainty, record, options)
         else:
             flow = read_flow(datasets, options, record)
-        for note in select.other_velocities(datasets, flow.pair) if u is None else ():
-            record("select", note, notable=True)
+        for note, names in select.other_velocities(datasets, flow.pair) if u is None else ():
+            record("select", note, Remedy("vectors", names, "to draw these,"), notable=True)
         if not flow.places.is_earth and projection is not None:
             raise FieldError(
                 f"projection is {projection!r}, but the positions are {flow.places.why}, not "
@@ -132,6 +132,31 @@ def read_datasets(
     record.notify()
     datasets.close()
     return arrays
+
+
+def _projection(options: FieldOptions) -> str | None:
+    """Return the name of the map, or of the globe; ``None`` if none is named."""
+    if not options.globe:
+        return options.projection
+    if options.projection not in (None, GLOBE):
+        raise FieldError(
+            f"globe=True and projection={options.projection!r} are given; omit one of them"
+        )
+    return GLOBE
+
+
+def _on_named(datasets: Datasets, dims: str) -> Datasets:
+    """Return datasets whose positions are two coordinates that the user names."""
+    x, y = select.two_names(dims, "dims", "lon,lat")
+    placed = []
+    for ds in datasets:
+        if {x, y} <= {*ds.variables} or len(datasets) == 1:
+            placed.append(placed_on(ds, x, y))
+        else:
+            placed.append(ds)
+    changed = Datasets(placed, datasets.closers, recognised=True)
+    changed.used = datasets.used
+    return changed
 
 
 def _words(flow: Flow, scalars: Mapping[str, _Scalar], name: str) -> dict[str, Any]:
@@ -212,8 +237,8 @@ def _note_rest(read: LazySteps, flow: Flow) -> None:
     if first:
         times = np.asarray(flow.drawn.times)[first : first + 1]
         time = f"{labels.text(times)} {flow.drawn.time_unit}".strip()
-        text = f"the velocity is zero everywhere in the first step; step {first} ({time}) is the "
-        flow.record("select", f"{text}first that is not", notable=True)
+        text = f"the velocity is zero everywhere in the first step; it is not from step {first} on"
+        flow.record("select", f"{text} ({time})", notable=True)
 
 
 def _note_gaps(read: LazySteps, flow: Flow) -> None:
@@ -289,8 +314,9 @@ def _placed(flow: Flow, projection: str | None) -> tuple[Placed, dict[str, Any]]
         return PlaneNodes(mesh.positions), {"triangles": mesh.triangles[0], **_units(flow)}
     nodes = mesh_on_map(mesh.a, mesh.b, mesh.triangles[0], places, projection)
     if nodes.lost:
-        text = f"{nodes.lost:,} triangles are left out, because the map cuts them, as at a pole; "
-        flow.record("surface", f"{text}draw a globe to see all: globe=True", notable=True)
+        text = f"{nodes.lost:,} triangles are left out, because the map cuts them, as at a pole"
+        whole = Remedy("globe", value=True, aim="to see all of them,")
+        flow.record("surface", text, whole, notable=True)
     return nodes, {"triangles": nodes.triangles, **_units(flow)}
 
 
@@ -315,16 +341,21 @@ def _units(flow: Flow) -> dict[str, str]:
         length = flow.places.unit
         if not length and unit and units.factor(unit, "m/s") not in (None, 1.0):
             length = "m"
-            record("units", f"{flow.places.why} have no unit; m is assumed", notable=True)
+            text = f"{flow.places.why} have no unit, and m is assumed"
+            record("units", text, units.unit_remedy("length_unit", length), notable=True)
         if not unit and length and time:
-            record("units", f"{names} have no unit; {length}/{time} is assumed", notable=True)
+            assumed = f"{length}/{time}"
+            text = f"{names} have no unit, and {assumed} is assumed"
+            record("units", text, units.unit_remedy("velocity_unit", assumed), notable=True)
         return {"length_unit": length, "time_unit": time}
     if unit and units.factor(unit, "m/s") is None:
         raise FieldError(f"the unit of {names} is {unit!r}; expected one such as m/s on the Earth")
     if not unit:
-        record("units", f"{names} have no unit; m/s is assumed", notable=True)
+        text = f"{names} have no unit, and m/s is assumed"
+        record("units", text, units.unit_remedy("velocity_unit", "m/s"), notable=True)
     if not time and flow.drawn.steps > 1:
-        record("units", "times have no unit; s is assumed", notable=True)
+        text = "times have no unit, and s is assumed"
+        record("units", text, units.unit_remedy("time_unit", "s"), notable=True)
     return {"length_unit": "m", "time_unit": time or "s"}
 
 

@@ -15,13 +15,17 @@ from typing import TYPE_CHECKING, Any
 
 from flowtex.errors import FieldError
 from flowtex.field import units
+from flowtex.remedies import Remedy
 from flowtex.sources.datasets.axes import FACES, NODES, horizontal_dims
 from flowtex.sources.datasets.curved import is_around, on_sphere
 from flowtex.sources.datasets.directions import (
     ANGLES,
+    BY_WORD,
     CARTESIAN,
+    MEANINGS,
     POLAR,
     SPHERICAL,
+    TOWARDS,
     TURNS,
     convention,
 )
@@ -69,6 +73,8 @@ AROUND_AXIS = re.compile(r"^(u|v|w|vel|velocity)_?(phi|lon\w*)$", re.I)
 #: Words of descriptions that say along what the components are.
 TO_EARTH = re.compile(r"\b(earth|true|geographic)[- _]?(rotated|relative|north)|to earth\b", re.I)
 TO_GRID = re.compile(r"\bgrid[- _]?(relative|oriented|aligned)|relative to (the )?grid", re.I)
+#: Rank of the least likely pairs that a notice names beside the drawn one.
+LEAST_LIKELY = 4
 #: Coordinates, which are no components though their standard names say x and y.
 PLACES = re.compile(r"(coordinate|longitude|latitude)$")
 
@@ -171,12 +177,34 @@ def _of_angle(speed: xr.DataArray, angle: xr.DataArray) -> Pair:
     meaning = convention(speed, angle)
     why = f"{speed.name} and {angle.name}, {meaning.words}"
     if not meaning.is_declared:
-        why += (
-            f", as nothing says otherwise; {angle.name}.attrs['long_name'] may say \"direction "
-            'from", "direction to" or "counterclockwise from x"'
-        )
+        why += ", as nothing says otherwise"
     guessed = not meaning.is_declared
     return Pair(speed, angle, "earth", why, kind=meaning.kind, named=True, guessed=guessed)
+
+
+def other_angle(pair: Pair) -> Remedy:
+    """Return the argument that gives the angle of a pair another meaning."""
+    word = "to"
+    if pair.kind == TOWARDS:
+        word = "from"
+    return Remedy("components", word, f"if it is {MEANINGS[word]},")
+
+
+def likely_others(datasets: Sequence[xr.Dataset], pair: Pair) -> list[str]:
+    """Return the names of other pairs that may be a velocity as well.
+
+    Those of other files are left to :func:`other_velocities`.
+    """
+    own = []
+    for ds in datasets:
+        if "source" not in ds.encoding or {pair.u.name, pair.v.name} & {*ds}:
+            own.append(ds)
+    found = []
+    for other in find_pairs(own):
+        is_same = {str(other.u.name), str(other.v.name)} == {*pair.parts}
+        if not is_same and other.rank <= LEAST_LIKELY:
+            found.append(other.names)
+    return found
 
 
 def _as_named(one: xr.DataArray, other: xr.DataArray) -> Pair:
@@ -194,8 +222,12 @@ def _is_angle(array: xr.DataArray) -> bool:
     return bool(ANGLES.search(name) or TURNS.search(name))
 
 
-def two_names(vectors: str | None) -> tuple[str, str] | tuple[None, None]:
+def two_names(
+    vectors: str | None, argument: str = "vectors", example: str = "uo,vo"
+) -> tuple[str, str] | tuple[None, None]:
     """Return the names of two components, such as ``("uo", "vo")`` of ``"uo,vo"``.
+
+    ``argument`` and ``example`` are for messages.
 
     Raises
     ------
@@ -204,11 +236,9 @@ def two_names(vectors: str | None) -> tuple[str, str] | tuple[None, None]:
     """
     if vectors is None:
         return None, None
-    names = [word.strip() for word in vectors.split(",")]
+    names = [word.strip() for word in str(vectors).split(",")]
     if len(names) != 2 or not all(names):
-        raise FieldError(
-            f'vectors is {vectors!r}; expected the names of two components, as in "uo,vo"'
-        )
+        raise FieldError(f'{argument} is {vectors!r}; expected two names, as in "{example}"')
     return names[0], names[1]
 
 
@@ -292,7 +322,11 @@ def with_directions(pair: Pair, components: str | None) -> Pair:
     Of those in polar and spherical coordinates the first is along the columns, as on any grid.
     """
     kind = pair.kind
-    if components in ("polar", "cylindrical"):
+    if components in BY_WORD:
+        kind = BY_WORD[components]
+        meaning = f"{' and '.join(pair.parts)}, {MEANINGS[components]}"
+        pair = replace(pair, along="earth", why=meaning, guessed=False)
+    elif components in ("polar", "cylindrical"):
         kind = POLAR
     elif components == "spherical":
         kind = SPHERICAL
@@ -304,8 +338,8 @@ def with_directions(pair: Pair, components: str | None) -> Pair:
     return pair
 
 
-def other_velocities(datasets: Sequence[xr.Dataset], drawn: Pair) -> Iterator[str]:
-    """Yield a notice for each file whose velocity is not drawn, as another file's is."""
+def other_velocities(datasets: Sequence[xr.Dataset], drawn: Pair) -> Iterator[tuple[str, str]]:
+    """Yield a notice for each file whose velocity is not drawn, and the names of its components."""
     own = {ds.encoding.get("source") for ds in datasets if {drawn.u.name, drawn.v.name} & {*ds}}
     for ds in datasets:
         source = ds.encoding.get("source")
@@ -314,7 +348,8 @@ def other_velocities(datasets: Sequence[xr.Dataset], drawn: Pair) -> Iterator[st
             v = pairs[0].v.name
             yield (
                 f"{drawn.u.name} and {drawn.v.name} are drawn, and {u} and {v} of "
-                f"{Path(source).name} are not; draw these by themselves"
+                f"{Path(source).name} are not",
+                pairs[0].names,
             )
 
 

@@ -18,10 +18,11 @@ from flowtex._util.arrays import even_runs
 from flowtex.errors import FieldError
 from flowtex.field.grids.grid_nodes import find_closure
 from flowtex.field.steps import Nodes, examined_steps, typical_steps
+from flowtex.remedies import sentence
 from flowtex.sources import maps
 from flowtex.sources.datasets.coordinates import Places
 from flowtex.sources.datasets.directions import in_components
-from flowtex.sources.datasets.masks import Mask, undeclared_fills, valid_range
+from flowtex.sources.datasets.masks import DRAW_ALL, Mask, undeclared_fills, valid_range
 from flowtex.sources.datasets.staggered import Sides, centred
 from flowtex.sources.maps import Lines, NodeLines
 from flowtex.sources.notices import Record, notify
@@ -32,6 +33,8 @@ if TYPE_CHECKING:
 
 #: Numbers of rows and columns; ``None`` for all.
 Chosen: TypeAlias = tuple[Indices, Indices] | None
+#: Words for the share of a variable that has a fill value, by the value and the step.
+FillWords: TypeAlias = dict[tuple[float, int], list[str]]
 #: Values of a step that are examined.
 MOST_EXAMINED = 4_000_000
 #: Share of nodes without data at some times from which on a notice is issued.
@@ -116,7 +119,9 @@ class Component:
             values = self.sample(step, axes)
             found = undeclared_fills(values, self.fills)
             if found and not any(self.late_fills.values()):
-                notify(masked_text(self.name, values, found[0], step))
+                words = [f"{np.mean(values == found[0]):.0%} of {self.name}"]
+                text = sentence(masked_text(words, found[0], step), [DRAW_ALL])
+                notify(text, [DRAW_ALL])
             self.late_fills[step] = found
         return self.late_fills[step]
 
@@ -127,12 +132,14 @@ def checked_component(
     axes: int,
     wanted: Any,
     record: Record,
+    fills_found: FillWords,
     *,
     limits: tuple[float, float] | None = None,
 ) -> Component:
     """Return a component without values that are no data, as its steps and attributes tell.
 
-    Values outside the ``limits`` are codes, if no attribute declares a range.
+    Values outside the ``limits`` are codes, if no attribute declares a range. ``fills_found``
+    receives the words for undeclared fill values.
     """
     part = Component(array.variable, factor, valid_range(array) or limits, name=str(array.name))
     sample = [read_step(part.variable, 0, at, axes=axes) for at in examined(array, axes)]
@@ -153,20 +160,23 @@ def checked_component(
         found = undeclared_fills(values, fills)
         fills += found
         for fill in found:
-            text = masked_text(str(array.name), values, fill, step)
-            record("mask", text, notable=True)
+            words = f"{np.mean(values == fill):.0%} of {array.name}"
+            fills_found.setdefault((fill, step), []).append(words)
     return replace(part, fills=fills, late_fills=dict.fromkeys(steps, ()))
 
 
-def masked_text(name: str, values: Floats, fill: float, step: int) -> str:
-    """Return the notice about an undeclared fill value among the values of a step."""
-    text = f"{np.mean(values == fill):.0%} of {name} masked"
+def record_fills(found: FillWords, record: Record) -> None:
+    """Record undeclared fill values once for all components."""
+    for (fill, step), words in found.items():
+        record("mask", masked_text(words, fill, step), DRAW_ALL, notable=True)
+
+
+def masked_text(words: list[str], fill: float, step: int) -> str:
+    """Return the notice about an undeclared fill value in shares of variables at a step."""
+    text = f"{' and '.join(words)} masked"
     if step:
         text += f" at step {step}"
-    return (
-        f"{text}: {fill:g}, which is far from all other values, is taken as missing; mask=False "
-        "draws it"
-    )
+    return f"{text}: {fill:g}, which is far from all other values, is taken as missing"
 
 
 def steps_to_examine(variable: xr.Variable, axes: int) -> list[int]:

@@ -26,7 +26,14 @@ from flowtex.sources.datasets.align import align, common
 from flowtex.sources.datasets.coordinates import LATITUDE, LONGITUDE
 from flowtex.sources.datasets.levels import is_pressure
 from flowtex.sources.datasets.select import are_partners, two_names, variable, velocity_unit
-from flowtex.sources.datasets.values import Component, checked_component, numbers_in, read_step
+from flowtex.sources.datasets.values import (
+    Component,
+    FillWords,
+    checked_component,
+    numbers_in,
+    read_step,
+    record_fills,
+)
 from flowtex.sources.notices import Record
 
 if TYPE_CHECKING:
@@ -35,7 +42,7 @@ if TYPE_CHECKING:
 #: Names, and words of standard names, of vertical velocities.
 NAMES = re.compile(r"^(w|wo|wa|wap|omega|w_?vel|vvel|vovecrtz|w_velocity)$", re.I)
 #: Options that a section cannot follow.
-HORIZONTAL_OPTIONS = ("components", "max_edge")
+HORIZONTAL_OPTIONS = ("components", "max_edge", "dims", "length_unit", "velocity_unit")
 LONGEST_NAME = 40  #: Longest name that fits beside a colour bar.
 HORIZONTAL = re.compile(r"eastward|northward|zonal|meridional|[xy]_(velocity|stress)", re.I)
 WORDS = re.compile(r"upward|downward|vertical|tendency_of_air_pressure")
@@ -126,7 +133,9 @@ def read_section(
     y, y_factor, y_text = _vertical(up, two)
     count = drawn.steps
 
-    checked = (checked_component(part, 1.0, 2, None, record) for part in parts)
+    fills: FillWords = {}
+    checked = [checked_component(part, 1.0, 2, options.mask, record, fills) for part in parts]
+    record_fills(fills, record)
     along_u, along_v = (LazySteps(count, partial(_step, part, close)) for part in checked)
     velocities = LazySteps(count, partial(_velocity, along_u, along_v, metres * x_factor, y_factor))
     # The axes have different units, so a speed along both has none.

@@ -23,6 +23,7 @@ from flowtex.field.triangles.triangle_nodes import (
     solid_triangles,
     triangle_normals,
 )
+from flowtex.remedies import Remedy
 from flowtex.sources.meshes import vectors
 from flowtex.sources.meshes.vectors import MeshArray, Sheet
 from flowtex.sources.notices import Record
@@ -244,8 +245,7 @@ def _surface_of(
                 text = "cells of two dimensions are"
             else:
                 text = "outer surface of the volume is"
-            text = f"the {text} drawn; to cut the volume, use {_examples(mesh)}"
-            record("surface", text, notable=True)
+            record("surface", f"the {text} drawn", *_other_cuts(mesh), notable=True)
         drawn_kinds = [kind for kind in kinds if kind.dimension == (2 if flat else 3)]
         drawn: Any = np.isin(mesh.celltypes, drawn_kinds)
         if not (drawn.all()):
@@ -275,18 +275,21 @@ def _surface_of(
     return mesh, triangles, cells
 
 
-def _examples(mesh: pv.DataSet) -> str:
+def _other_cuts(mesh: pv.DataSet) -> list[Remedy]:
+    """Return the arguments that cut a volume in its middle, by a plane or an isosurface."""
     bounds = np.reshape(mesh.bounds, (3, 2))
     axis = int(np.argmin(np.ptp(bounds, axis=1)))
-    cut = f'slice="{"xyz"[axis]}={bounds[axis].mean():.4g}"'
-    arrays = vectors.catalogue(mesh)
-    names = []
-    for a in arrays:
-        if a.real and a.components == 1 and a.name != HIDDEN:
-            names.append(a.name)
-    if names:
-        return f'{cut} or contour="{names[0]}=VALUE"'
-    return cut
+    plane = f"{'xyz'[axis]}={bounds[axis].mean():.4g}"
+    cuts = [Remedy("slice", plane, "to cut the volume, use")]
+    for array in vectors.catalogue(mesh):
+        if not array.real or array.components != 1 or array.name == HIDDEN:
+            continue
+        values = vectors.values_of(mesh, array)
+        middle = (np.nanmin(values) + np.nanmax(values)) / 2
+        if np.nanmin(values) < middle < np.nanmax(values):
+            cuts.append(Remedy("contour", f"{array.name}={middle:.4g}", "or"))
+            return cuts
+    return cuts
 
 
 def _shown_cells(mesh: pv.DataSet) -> pv.DataSet:

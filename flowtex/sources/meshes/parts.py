@@ -17,6 +17,7 @@ import scipy
 
 from flowtex._util.array_types import AnyArray, Bools, Floats, Indices
 from flowtex.errors import FieldError
+from flowtex.remedies import Remedy
 from flowtex.sources.meshes import borders
 from flowtex.sources.meshes.cells import check_mesh
 from flowtex.sources.meshes.meshio_files import of_meshio
@@ -299,7 +300,11 @@ def _together(parts: Parts, record: Record) -> pv.UnstructuredGrid:
         record("select", f"{', '.join(still)} has no vectors, and is not drawn", notable=True)
     parts = moving
     text = f"{len(parts)} blocks are drawn together: {', '.join(parts)}"
-    record("align", text, notable=True)
+    name = next(iter(parts))
+    number: int | str = name
+    if name.isdecimal():
+        number = int(name)
+    record("align", text, Remedy("block", number, "to draw one of them,"), notable=True)
     blocks = {name: part.copy(deep=False) for name, part in parts.items()}
     scalars = [a for b in blocks.values() for a in catalogue(b) if a.numeric and a.components == 1]
     for array, where in sorted({(a.name, a.where) for a in scalars}):

@@ -22,7 +22,7 @@ from flowtex.field.derived.quantities import component_name
 from flowtex.field.field_arrays import NOTABLE_SHARE, GridArrays, TriangleArrays
 from flowtex.field.folds import MOST_NODES
 from flowtex.field.grids.grid_surface import GridSurface
-from flowtex.field.options import OF_EARTH, FieldOptions
+from flowtex.field.options import OF_EARTH, OF_UNITS, FieldOptions
 from flowtex.sources.meshes import parts, series, volume
 from flowtex.sources.meshes.cuts import Cut, check_cut, contour_of, slice_of, surface_sheet
 from flowtex.sources.meshes.turned_vectors import MeshVelocity
@@ -63,6 +63,11 @@ def read_meshes(mesh: Any, options: FieldOptions, *, name: str = "") -> GridArra
     """
     record = Record()
     options.refuse(OF_EARTH, "datasets, but this is a mesh")
+    if options.mask not in (None, False):
+        raise FieldError(
+            f"mask is {options.mask!r}; of a mesh expected False, which draws fill values too, or "
+            "none. To hide nodes, set their velocity to NaN"
+        )
     plane, periodic, sign_free = options.plane, options.periodic, bool(options.sign_free)
     if (preference := options.preference or "point") not in ("point", "cell"):
         raise FieldError(f'preference is {preference!r}; expected "point" or "cell"')
@@ -91,7 +96,11 @@ def read_meshes(mesh: Any, options: FieldOptions, *, name: str = "") -> GridArra
     times = options.times
     count = len(mesh) if isinstance(mesh, (list, tuple)) else len(parts.times_of(mesh))
     ranges = volume.VolumeValues(velocity, chosen or cut, count, preference)
-    arrays = _stacked(chain([first], steps), read_as, draw, times, preference, record, ranges)
+    masks = Masks(stored, keeps_fills=options.mask is False)
+    every = chain([first], steps)
+    arrays = _stacked(every, read_as, masks, draw, times, preference, record, ranges)
+    for unit in OF_UNITS:
+        arrays[unit] = getattr(options, unit) or ""
     record.notify()
     arrays |= {"name": name, "reading": record.reading, "vectors": velocity.name}
     arrays["volume_values"] = ranges.values()
@@ -142,6 +151,7 @@ def _has_cells_at_folds(grid: Any, plane: volume.Plane, velocity: MeshArray) -> 
 def _stacked(
     steps: Iterator[parts.TimeStep],
     read_as: MeshVelocity,
+    masks: Masks,
     draw: Callable[[Any], Sheet],
     times: ArrayLike | None,
     preference: str,
@@ -149,7 +159,7 @@ def _stacked(
     ranges: volume.VolumeValues,
 ) -> dict[str, Any]:
     velocity = read_as.drawn
-    masks, first, reordered = Masks(read_as.stored), next(steps), 0
+    first, reordered = next(steps), 0
     start: Sheet | None = None
     single: set[str] = set()
     read = []

@@ -21,6 +21,7 @@ from flowtex.field.dates import ENDS
 from flowtex.field.field_arrays import GridArrays, Reading, ReadingStep, TriangleArrays
 from flowtex.field.interpolation import at_moment, steps_around
 from flowtex.field.options import FieldOptions
+from flowtex.remedies import Remedy
 from flowtex.sources.meshes import parts
 from flowtex.sources.meshes.parts import TimeStep
 from flowtex.sources.meshes.vectors import (
@@ -125,8 +126,9 @@ def wall_stress(steps: Iterator[TimeStep], record: Record) -> str | None:
         for array in stresses:
             if others and np.nan_to_num(values_of(grid, array)).any():
                 name = others[0].name
-                text = f'"{name}" is zero on this wall, so "{array.name}" is drawn; to draw the '
-                record("select", f'{text}other one, vectors="{name}"', notable=True)
+                text = f'"{name}" is zero on this wall, so "{array.name}" is drawn'
+                other = Remedy("vectors", name, "to draw the other one,")
+                record("select", text, other, notable=True)
                 return array.name
     return None
 

@@ -20,7 +20,8 @@ from flowtex._util.arguments import near_names
 from flowtex._util.array_types import AnyArray, Bools, Floats, Indices
 from flowtex.errors import FieldError
 from flowtex.field.derived.quantities import is_velocity
-from flowtex.sources.datasets.masks import undeclared_fill
+from flowtex.remedies import Remedy
+from flowtex.sources.datasets.masks import DRAW_ALL, undeclared_fill
 from flowtex.sources.notices import Record
 
 if TYPE_CHECKING:
@@ -251,9 +252,8 @@ def _found(mesh: pv.DataSet, known: str, record: Record) -> MeshArray:
         single = [a for a in _component_vectors(mesh) if is_velocity(a.name)]
         if len(single) == 1 and single[0] not in arrays:
             listed = ", ".join(map(str, arrays))
-            text = f"made of single arrays; other vectors: {listed}. Choose one of them as in "
-            text = f'the velocity is "{single[0].name}", {text}vectors="{arrays[0].name}"'
-            record("select", text, notable=True)
+            text = f'the velocity is "{single[0].name}", made of single arrays; other vectors: '
+            record("select", text + listed, Remedy("vectors", arrays[0].name), notable=True)
             return single[0]
     active = mesh.active_vectors_name
     # VTK's PLOT3D reader marks the momentum automatically: that is no choice.
@@ -278,10 +278,11 @@ def _found(mesh: pv.DataSet, known: str, record: Record) -> MeshArray:
     reason = f"the only {array.where.removesuffix('s')} array with {array.components} components"
     if others:
         reason = "the active vectors of the mesh"
+    remedies = []
     if by_name:
-        reason = f"chosen by its name; other vectors: {', '.join(map(str, others))}. Choose one of "
-        reason += f'them as in vectors="{others[0].name}"'
-    record("select", f'the velocity is "{array.name}", {reason}', notable=by_name)
+        reason = f"chosen by its name; other vectors: {', '.join(map(str, others))}"
+        remedies = [Remedy("vectors", others[0].name)]
+    record("select", f'the velocity is "{array.name}", {reason}', *remedies, notable=by_name)
     return array
 
 
@@ -411,10 +412,14 @@ def _hidden(mesh: Any) -> dict[str, Bools]:
 
 
 class Masks:
-    """The masks of a series, and the greatest share that each of them hides."""
+    """The masks of a series, and the greatest share that each of them hides.
 
-    def __init__(self, velocity: MeshArray) -> None:
+    With ``keeps_fills`` fill values are drawn.
+    """
+
+    def __init__(self, velocity: MeshArray, *, keeps_fills: bool = False) -> None:
         self._velocity = velocity
+        self._keeps_fills = keeps_fills
         self._shares: dict[str, float] = {}
         self._fills: dict[float, str] = {}
 
@@ -439,7 +444,7 @@ class Masks:
             known = values[visible]
         for fill in self._fills:
             known = np.where(known == fill, np.nan, known)
-        while (found := undeclared_fill(known)) is not None:
+        while not self._keeps_fills and (found := undeclared_fill(known)) is not None:
             text = f"{name} is {found:g} there, which is taken for a fill value"
             self._fills[found] = f"of the {where} are masked: {text}"
             known = np.where(known == found, np.nan, known)
@@ -467,4 +472,7 @@ class Masks:
             else:
                 percent = "less than 1%"
             if share:
-                record("mask", f"{percent} {text}", notable=text in self._fills.values())
+                if text in self._fills.values():
+                    record("mask", f"{percent} {text}", DRAW_ALL, notable=True)
+                else:
+                    record("mask", f"{percent} {text}")

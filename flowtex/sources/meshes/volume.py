@@ -20,6 +20,7 @@ from flowtex._util.cache import ByteCache
 from flowtex.errors import FieldError
 from flowtex.field.grids.grid_nodes import axes, find_closure, products
 from flowtex.field.validation import MAGNITUDES
+from flowtex.remedies import Remedy
 from flowtex.sources.meshes import vectors
 from flowtex.sources.meshes.cuts import Contour, Cut, Slice
 from flowtex.sources.meshes.vectors import MeshArray, Sheet
@@ -212,10 +213,10 @@ def find_plane(mesh: Any, plane: Any, record: Record) -> Plane:
     if plane is None and min(dimensions) == 1:
         return Plane(dimensions, dimensions.index(1), 0)
     if plane is None:
-        ranges = ", ".join(f"{a}=0 to {n - 1}" for a, n in zip("ijk", dimensions, strict=True))
-        text = f'the plane is "k={dimensions[2] // 2}", the middle of {size}; choose another as in '
-        text += f'plane="j={dimensions[1] // 2}" ({ranges}), or cut anywhere as in slice="z"'
-        record("select", text, notable=True)
+        another = Remedy("plane", f"j={dimensions[1] // 2}")
+        cut = Remedy("slice", "z", "or cut anywhere, as in")
+        text = f'the plane is "k={dimensions[2] // 2}", the middle of {size}, counted from 0'
+        record("select", text, another, cut, notable=True)
         return Plane(dimensions, 2, dimensions[2] // 2)
     if isinstance(plane, str):
         match = _PLANE.fullmatch(plane)

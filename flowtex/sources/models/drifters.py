@@ -15,7 +15,8 @@ from flowtex._util.array_types import Floats
 from flowtex.errors import FieldError, import_extra
 from flowtex.field.dates import span_since
 from flowtex.field.earth.projection import EARTH_RADIUS
-from flowtex.sources.datasets.axes import TIME, Choice
+from flowtex.remedies import Remedy
+from flowtex.sources.datasets.axes import TIME, Choice, typed_value
 from flowtex.sources.datasets.coordinates import LONGITUDE
 from flowtex.sources.datasets.select import find_pairs
 from flowtex.sources.models.conventions import with_points
@@ -49,10 +50,14 @@ def as_points(ds: xr.Dataset, choice: Choice, record: Record) -> xr.Dataset:
         return ds
     tracks = Tracks.of(ds, parts)
     time = _chosen_time(tracks, (TIME, str(parts.time.name)), choice)
-    others = ""
+    remedies = []
+    reason = ""
     if time is None:
         time = _fullest_time(tracks)
-        others = f', which most have; another is sel={{"{TIME}": ...}}'
+        reason = ", which most have"
+        other = _fullest_time(tracks, without=time)
+        if other != time:
+            remedies = [Remedy("sel", {TIME: _typed_time(tracks, other)})]
     points = _points_at(tracks, time)
     count = len(points[tracks.names[0]])
     when = _word(tracks, time)
@@ -63,8 +68,8 @@ def as_points(ds: xr.Dataset, choice: Choice, record: Record) -> xr.Dataset:
             "boxes: df = ds.to_dataframe(), and flowtex.show(df.groupby([df.lat.round(), "
             'df.lon.round()])[["u", "v"]].mean())'
         )
-    text = f"{count:,} of {tracks.count:,} trajectories have a position at {when}{others}"
-    record("select", text, notable=bool(others))
+    text = f"{count:,} of {tracks.count:,} trajectories have a position at {when}{reason}"
+    record("select", text, *remedies, notable=bool(reason))
     return _dataset(points, tracks, time, record)
 
 
@@ -108,15 +113,26 @@ def _time_by_value(tracks: Tracks, name: str, value: Any) -> float:
     return begin
 
 
-def _fullest_time(tracks: Tracks) -> float:
-    """Return the first of the observed times that most trajectories span."""
+def _fullest_time(tracks: Tracks, without: float | None = None) -> float:
+    """Return the first of the observed times that most trajectories span.
+
+    The time ``without`` is returned only if there is no other.
+    """
     begins = np.sort(tracks.times[tracks.first[:-1]])
     ends = np.sort(tracks.times[tracks.first[1:] - 1])
     times = np.unique(tracks.times)
     times = times[:: -(-len(times) // MOST_TIMES)]
     begun = np.searchsorted(begins, times, side="right")
     ended = np.searchsorted(ends, times, side="left")
-    return float(times[np.argmax(begun - ended)])
+    counts = np.where(times == without, -1, begun - ended)
+    return float(times[np.argmax(counts)])
+
+
+def _typed_time(tracks: Tracks, time: float) -> Any:
+    """Return a time as users type it."""
+    if tracks.origin is None:
+        return typed_value(time)
+    return _word(tracks, time).replace(" ", "T")
 
 
 def _word(tracks: Tracks, time: float) -> str:

@@ -14,6 +14,7 @@ from flowtex.errors import FieldError
 from flowtex.field import units
 from flowtex.field.earth.projection import EARTH_RADIUS, GLOBE, Projection
 from flowtex.field.triangles.triangle_nodes import nodal_means, triangle_normals
+from flowtex.remedies import Remedy
 from flowtex.sources.datasets.axes import FACES, NODES
 from flowtex.sources.models.scattered import edge_length, join_points
 from flowtex.sources.reader_errors import values_in
@@ -104,6 +105,23 @@ class Mesh:
         if self.is_earth:
             return edge_length(self.max_edge, "m", default="km")
         return edge_length(self.max_edge, self.unit, default=self.unit)
+
+    @property
+    def other_edge(self) -> Remedy:
+        """The argument that limits edges, with the longest one of now, rounded up."""
+        edges = self.positions[self.faces] - self.positions[np.roll(self.faces, 1, axis=1)]
+        length = float(np.linalg.norm(edges, axis=-1).max())
+        unit = self.unit
+        if self.is_earth:
+            # Arcs are longer than their chords.
+            half = min(length / 2 / EARTH_RADIUS, 1.0)
+            length = 2 * EARTH_RADIUS * np.arcsin(half) / 1000
+            unit = "km"
+        step = 10.0 ** (np.floor(np.log10(length)) - 1)
+        value: float | str = float(f"{np.ceil(length / step) * step:.6g}")
+        if unit:
+            value = f"{value:g} {unit}"
+        return Remedy("max_edge", value, "for shorter or longer edges,")
 
     @cached_property
     def _raw(self) -> tuple[Floats, Floats]:

@@ -311,6 +311,9 @@ def _with_axes(ds: xr.Dataset) -> xr.Dataset:
         is_time = units.measures(str(c.attrs.get("units", "")), units.TIMES)
         if is_guess and c.dtype.kind in "fiu" and not (is_time or TIMES.match(str(name))):
             del c.attrs["axis"]
+        is_number = name in ("i", "j") and "axis" not in ds[name].attrs
+        if is_number and "axis" in c.attrs:  # which of them is across is a choice
+            del c.attrs["axis"]
     return guessed
 
 

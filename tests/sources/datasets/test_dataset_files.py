@@ -70,7 +70,7 @@ def test_files_that_are_not_drawn_are_told(tmp_path: Path) -> None:
     paths = [tmp_path / "air.nc", tmp_path / "sea.nc"]
     air.drop_attrs().to_netcdf(paths[0])
     sea.to_netcdf(paths[1])
-    with pytest.warns(Notice, match=r"^uo and vo are drawn, and u and v of air\.nc are not; draw"):
+    with pytest.warns(Notice, match=r"^uo and vo are drawn, and u and v of air\.nc are not; to"):
         FlowField.from_file(paths)
 
 

@@ -50,17 +50,23 @@ def supported(
     return register
 
 
-def drawn(code: str, variables: Mapping[str, Any]) -> flowtex.FlowField:
-    """Run a line of code, and return the field that it would draw."""
-    fields = []
+def shown(code: str, variables: Mapping[str, Any]) -> tuple[Any, dict[str, Any]]:
+    """Run a line of code, and return the data and the options that it would draw."""
+    calls = []
 
     def show(*data: Any, **options: Any) -> None:
         whole = data if len(data) > 1 else data[0]
-        fields.append(read(whole, **options))
+        calls.append((whole, options))
 
     names = {"flowtex": SimpleNamespace(show=show, FlowField=flowtex.FlowField), **variables}
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", UserWarning)
         exec(code, names)
-    (field,) = fields
-    return field
+    (call,) = calls
+    return call
+
+
+def drawn(code: str, variables: Mapping[str, Any]) -> flowtex.FlowField:
+    """Run a line of code, and return the field that it would draw."""
+    data, options = shown(code, variables)
+    return read(data, **options)

@@ -174,7 +174,8 @@ def test_fill_values_are_masked(fill: float, kind: str, where: str) -> None:
         assert not notices
         assert field.reading.of("mask") == (f"{share} have no velocity: U is NaN",)
     else:
-        text = f"{share} are masked: U is {fill:g} there, which is taken for a fill value"
+        text = f"{share} are masked: U is {fill:g} there, which is taken for a fill value; "
+        text += "to draw these values too, mask=False"
         assert notices == list(field.reading.of("mask")) == [text]
 
 

@@ -133,7 +133,7 @@ def test_without_a_time_the_fullest_one_is_drawn_with_a_notice() -> None:
     rows = table(velocity=True)
     late = rows.id < 40
     rows = rows[~late | (rows.time > 0.55)]
-    with pytest.warns(DatasetNotice, match=r"120 of 120 .* at time 0\.6, which most have; another"):
+    with pytest.warns(DatasetNotice, match=r"120 of 120 .* time 0\.6, which most have; choose a"):
         field = FlowField.from_xarray(rows)
     assert field.valid.sum() == COUNT
     assert FlowField.from_xarray(rows, isel={"time": 0}).valid.sum() == COUNT - 40
