@@ -15,11 +15,11 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal, TypeAlias
 from cyclopts import Group, Parameter
 from cyclopts.validators import Number
 
-from flowtex._util.written import Form, UnreadableError, number_or_text
+from flowtex._util.written import SWITCH, Form, UnreadableError, number_or_text
 from flowtex.errors import FieldError
 from flowtex.field.options import FieldOptions
 from flowtex.scene.forms import FORMS
-from flowtex.scene.options import Appearance, ViewOptions
+from flowtex.scene.options import COASTLINES, Appearance, ViewOptions
 from flowtex.settings import TABLE, Setting
 
 FLOW = Group("The flow", sort_key=1)
@@ -52,6 +52,8 @@ def _option_flags(kind: type, group: Group) -> dict[str, Any]:
         of_python = {"bool": bool, "bool | None": bool, "float": float}.get(str(option.type), str)
         if form.repeated:
             value: Any = tuple[str, ...]
+        elif form is SWITCH:
+            value = bool
         else:
             value = of_python
         text = form.words or _in_shell(option.metadata["text"])
@@ -115,6 +117,16 @@ TIME = Annotated[
     ),
 ]
 
+#: The flag of a file with other lines than the coasts.
+COASTLINES_FILE = "coastlines_file"
+COASTS = Annotated[
+    Path | None,
+    Parameter(
+        group=PICTURE,
+        help="GeoJSON, shapefile or GeoPackage whose lines are drawn in place of the coasts.",
+    ),
+]
+
 if TYPE_CHECKING:
     FieldFlags: TypeAlias = object
     LookFlags: TypeAlias = object
@@ -128,7 +140,11 @@ else:
     LookFlags = _flags(
         "LookFlags",
         "Colours and visibility.",
-        {**_option_flags(Appearance, PICTURE), **_option_flags(ViewOptions, PICTURE)},
+        {
+            **_option_flags(Appearance, PICTURE),
+            COASTLINES_FILE: COASTS,
+            **_option_flags(ViewOptions, PICTURE),
+        },
     )
     SettingFlags = _flags(
         "SettingFlags",
@@ -234,7 +250,17 @@ def arguments(*groups: object) -> dict[str, Any]:
                 raise UsageError(
                     f"--{name.replace('_', '-')} is {text}; expected {error}"
                 ) from error
-    return values
+    return _with_coasts(values)
+
+
+def _with_coasts(values: dict[str, Any]) -> dict[str, Any]:
+    """Return arguments with a file of coasts as their argument of Python."""
+    path = values.pop(COASTLINES_FILE, None)
+    if path is None:
+        return values
+    if COASTLINES in values:
+        raise UsageError("--coastlines and --coastlines-file are given; expected one of them")
+    return {**values, COASTLINES: path}
 
 
 def pixels(size: str) -> tuple[int, int]:

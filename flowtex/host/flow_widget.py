@@ -34,7 +34,7 @@ from flowtex.field.steps import LazySteps
 from flowtex.host.export import PREVIEW, page_text, write_page
 from flowtex.host.feed import Feed
 from flowtex.host.still import still_png
-from flowtex.host.view import CHOSEN, WebView, browser_options, client_module, web_views
+from flowtex.host.view import WebView, browser_options, client_module, is_choice, web_views
 from flowtex.rendering.camera import Camera, CameraValues, can_share_camera
 from flowtex.rendering.webgl.marks import MARK_PARTS
 from flowtex.rendering.webgl.protocol import Header
@@ -475,7 +475,7 @@ class FlowWidget(AppearanceAttributes, SettingTraits, Displayed):
         if kind == "appearance" and isinstance(message.get("changes"), dict):
             chosen = {}
             for n, value in message["changes"].items():
-                if n in CHOSEN:
+                if is_choice(n, value):
                     chosen[n] = value
             with suppress(ValueError, KeyError, TypeError):
                 self.scene.change(chosen)

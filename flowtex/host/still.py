@@ -358,7 +358,7 @@ def _draw_lines(picture: Image.Image, scene: ClientData, camera: Camera) -> None
     draw = ImageDraw.Draw(picture, "RGBA")
     fine = SPACING_PX * camera.height / (size[1] / 2)
     spacing = next((s for s in SPACINGS if s <= fine), 0.0)
-    for option, lines in map_lines(field, has_globe=False).items():
+    for option, lines in map_lines(field, has_globe=False, coast=scene.colours.coast).items():
         if not getattr(scene.colours, option):
             continue
         if spacing:

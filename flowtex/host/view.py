@@ -25,7 +25,7 @@ from flowtex.rendering.webgl.client_data import ClientData, Colours, tile_parts
 from flowtex.rendering.webgl.marks import MARK_PARTS, Marks
 from flowtex.rendering.webgl.protocol import Header, Parts
 from flowtex.rendering.webgl.velocity import Packing, packing_of
-from flowtex.scene.options import Options, default_cmap
+from flowtex.scene.options import EARTH_LINES, Options, coast_of, default_cmap, is_drawn
 from flowtex.scene.scene import Scene, make_scenes
 from flowtex.settings import TABLE
 from flowtex.sources.notices import notify_section
@@ -192,10 +192,16 @@ def colours_of(
         lighting=scene.is_lit,
         opacity=opacity,
         bar=scene.has_bar,
-        coastlines=look.coastlines is not False,
+        coastlines=is_drawn(look.coastlines),
+        coast=coast_of(look),
         graticule=look.graticule is not False,
         land=land,
     )
+
+
+def is_choice(name: object, value: object) -> bool:
+    """Return whether a browser may set a field of the appearance to a value: it names no files."""
+    return name in CHOSEN and (name not in EARTH_LINES or isinstance(value, bool))
 
 
 def choices_of(scene: Scene) -> tuple[Header, ...]:

@@ -38,6 +38,7 @@ from flowtex.rendering.vtk import FlowSurface
 from flowtex.rendering.vtk.frame import FrameSteps, Step
 from flowtex.rendering.vtk.layer import insert_text, plain_actor
 from flowtex.rendering.webgl.marks import RIM_COLOR, RIM_OPACITY, strokes
+from flowtex.scene.options import coast_of, is_drawn
 from flowtex.scene.scene import Scene
 
 #: Distance of land behind the surface, as a share of the distance from the eye.
@@ -219,15 +220,17 @@ class MapOverlay(Overlay):
         if appearance.land is not None:
             self._add_land(appearance.land)
         for option, stroke in STROKES.items():
-            if getattr(appearance, option) is not False and (forms := self._forms_of(option)):
+            if is_drawn(getattr(appearance, option)) and (forms := self._forms_of(option)):
                 self._add_lines(forms, stroke.width, stroke.color, stroke.opacity)
 
     def _forms_of(self, option: str) -> tuple[tuple[float, pv.PolyData], ...]:
         """Return the lines of an option, coarse to fine, made once; none far from a coast."""
         has_globe = self._radius is not None
-        if (option, has_globe) not in self._lines:
-            for name, whole in map_lines(self._field, has_globe=has_globe).items():
-                self._lines[name, has_globe] = ()
+        coast = coast_of(self._scene.appearance)
+        if (option, has_globe, coast) not in self._lines:
+            found = map_lines(self._field, has_globe=has_globe, coast=coast)
+            for name, whole in found.items():
+                self._lines[name, has_globe, coast] = ()
                 for spacing in SPACINGS:
                     if spacing:
                         lines = whole.thinned(spacing)
@@ -236,8 +239,8 @@ class MapOverlay(Overlay):
                     if len(lines.points):
                         first = np.delete(np.arange(len(lines.points)), lines.starts[1:] - 1)
                         mesh = piece_mesh(lines.points[first], lines.points[first + 1])
-                        self._lines[name, has_globe] += ((spacing, mesh),)
-        return self._lines[option, has_globe]
+                        self._lines[name, has_globe, coast] += ((spacing, mesh),)
+        return self._lines[option, has_globe, coast]
 
     def _add_land(self, color: Any) -> None:
         """Draw land and cells without data, and the globe where the field does not cover it."""

@@ -15,6 +15,7 @@ from flowtex._util.arrays import bounds, norm
 from flowtex._util.cache import WeakCache
 from flowtex._util.colours import is_light, rgb
 from flowtex.field import FlowField
+from flowtex.field.earth.coast import Coast
 from flowtex.field.earth.map_lines import MapLines, coastlines, graticule
 from flowtex.field.earth.on_land import on_land
 from flowtex.field.earth.projection import EARTH_RADIUS
@@ -63,14 +64,20 @@ def map_box(field: FlowField) -> Floats:
     return np.asarray(box + np.array([[-margin], [margin]]))
 
 
-def map_lines(field: FlowField, *, has_globe: bool) -> dict[str, MapLines]:
-    """Return coasts and graticule by their options; they end where cells and land do."""
+def map_lines(
+    field: FlowField, *, has_globe: bool, coast: Coast | None = None
+) -> dict[str, MapLines]:
+    """Return coasts and graticule by their options; they end where cells and land do.
+
+    The lines of a ``coast`` replace the coasts.
+    """
     projection = field.projection
     box = map_box(field)
     if projection is None:
         return {}
     if field.surface.is_closed:  # which has no border
-        return {"coastlines": coastlines(projection), "graticule": graticule(projection, box)}
+        whole = coastlines(projection, coast=coast)
+        return {"coastlines": whole, "graticule": graticule(projection, box)}
     middles, reach = _cells(field)
     tree = scipy.spatial.cKDTree(middles)
 
@@ -81,8 +88,9 @@ def map_lines(field: FlowField, *, has_globe: bool) -> dict[str, MapLines]:
 
     meshes = in_cells(graticule(projection, box))
     if not has_globe:
-        return {"coastlines": in_cells(coastlines(projection, box)), "graticule": meshes}
-    return {"coastlines": coastlines(projection), "graticule": graticule(projection).and_(meshes)}
+        return {"coastlines": in_cells(coastlines(projection, box, coast)), "graticule": meshes}
+    whole = coastlines(projection, coast=coast)
+    return {"coastlines": whole, "graticule": graticule(projection).and_(meshes)}
 
 
 def ground_cells(field: FlowField, *, tiled: bool = False) -> Ground:

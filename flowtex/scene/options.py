@@ -28,11 +28,13 @@ from flowtex._util.colours import (
 from flowtex.errors import FieldError, notify, raise_faults
 from flowtex.field import FlowField, Surface
 from flowtex.field.derived.quantities import COMPONENTS, SIGNED, component_name
+from flowtex.field.earth.coast import Coast
 from flowtex.field.options import FieldOptions, option
 from flowtex.field.validation import with_gaps
 from flowtex.rendering.camera import CAMERA_LIMITS, Camera, read_camera
 from flowtex.scene.fields import ARRAY, DATA
 from flowtex.settings import TABLE, Settings, SettingsError
+from flowtex.sources.coast_files import as_coast
 
 if TYPE_CHECKING:
     from flowtex.rendering.webgl.bodies import Bodies
@@ -50,7 +52,21 @@ SPEED = "speed"  #: The scalar that every flow has.
 ROBUST = "robust"  #: The range of colours without outliers.
 #: Arguments that are true or false.
 SWITCHES = ("log_scale", "flip_scalars", "visible", "lighting", "show_scalar_bar")
-EARTH_LINES = ("coastlines", "graticule")  #: Lines of the Earth that are drawn or not.
+COASTLINES = "coastlines"  #: The option of coasts, which may be lines of the user.
+GRATICULE = "graticule"  #: The option of meridians and parallels.
+EARTH_LINES = (COASTLINES, GRATICULE)  #: Lines of the Earth that are drawn or not.
+
+
+def is_drawn(value: Any) -> bool:
+    """Return whether the value of one of :data:`EARTH_LINES` draws lines, as by default."""
+    return value is None or bool(value)
+
+
+def coast_of(look: Appearance) -> Coast | None:
+    """Return the lines of the user in place of coasts, if there are any."""
+    if isinstance(look.coastlines, Coast):
+        return look.coastlines
+    return None
 
 
 def default_cmap(scalars: Any) -> str:
@@ -127,8 +143,11 @@ class Appearance:
         "repeats it. Where it is transparent the surface's colour is visible. It sets "
         '``noise="image"``, and ``strength=1`` unless that is given.',
     )
-    coastlines: bool | None = option(
-        None, "Whether coasts are drawn; by default if the field has a projection."
+    coastlines: Any | None = option(
+        None,
+        "Whether coasts are drawn; by default if the field has a projection. Or other lines in "
+        "their place: a GeoDataFrame or GeoSeries, or the path of a GeoJSON, shapefile or "
+        "GeoPackage.",
     )
     graticule: bool | None = option(
         None, "Whether meridians and parallels are drawn; by default if the field has a projection."
@@ -156,7 +175,9 @@ class Appearance:
             faults.append(f"opacity is {brief(self.opacity)}; expected a number from 0 to 1")
         faults += self._check_range()
         for name in (*SWITCHES, *EARTH_LINES):
-            if not isinstance(value := getattr(self, name), (bool, np.bool_, type(None))):
+            value = getattr(self, name)
+            is_coast = name == COASTLINES and isinstance(value, Coast)
+            if not (is_coast or isinstance(value, (bool, np.bool_, type(None)))):
                 faults.append(f"{name} is {brief(value)}; expected True or False")
         if self.land is False or (isinstance(self.land, str) and self.land == "none"):
             object.__setattr__(self, "land", None)
@@ -226,6 +247,9 @@ class Appearance:
         A norm replaces ``clim`` and ``log_scale``, and either of these, or a new range for other
         scalars, the norm.
         """
+        switch = changes.get(COASTLINES)
+        if isinstance(self.coastlines, Coast) and isinstance(switch, bool):
+            changes = {**changes, COASTLINES: replace(self.coastlines, shown=switch)}
         if changes.get("norm") is not None:
             changes = {"clim": None, "log_scale": False, **changes}
         ended = changes.get("clim") is not None or changes.get("log_scale")
@@ -256,6 +280,8 @@ def _attribute(name: str) -> property:
         return getattr(self.scene.appearance, name)
 
     def change(self: AppearanceAttributes, value: Any) -> None:
+        if name == COASTLINES:
+            value = as_coast(value)
         self.scene.change({name: value})
 
     return property(get, change, doc=Appearance.__dataclass_fields__[name].metadata["text"])
@@ -430,6 +456,8 @@ class Options:
             When no argument has the name; the error lists the nearest names.
         """
         accepted = {name: tuple(vars(_KINDS[name]())) for name in kinds or _KINDS}
+        if COASTLINES in values:
+            values[COASTLINES] = as_coast(values[COASTLINES])
         array: Any = values.get("scalars")
         is_list = isinstance(array, (list, tuple))  # perhaps of rows of different lengths
         if is_array := "field" in accepted and (is_list or np.ndim(array) > 0):

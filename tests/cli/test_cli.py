@@ -265,7 +265,7 @@ def test_info_says_what_is_needed(run: Run, block: Path, tmp_path: Path) -> None
 
     code, out, err = run("info", block)
     assert code == 0 and "What would be drawn" in out
-    assert 'the plane is "k=2", the middle' in out and 'as in --plane j=2' in out and not err
+    assert 'the plane is "k=2", the middle' in out and "as in --plane j=2" in out and not err
     mesh: Any = pv.read(block)
     mesh["heat"] = 2 * mesh["wind"]
     mesh["wave"] = 3 * mesh["wind"]

@@ -12,7 +12,7 @@ from flowtex.app.streaming.element import PAINTERS
 from flowtex.app.streaming.viewport import BACKGROUNDS as THEMES
 from flowtex.errors import FieldError
 from flowtex.field.dates import time_text
-from flowtex.scene.options import EARTH_LINES, SPEED
+from flowtex.scene.options import EARTH_LINES, SPEED, is_drawn
 from flowtex.scene.options import Appearance as Look
 from flowtex.settings import named_values
 
@@ -64,7 +64,7 @@ def look_shown(look: Look) -> dict[str, Any]:
     """Return the appearance of a surface as the page shows it, with all values explicit."""
     shown = {name: getattr(look, name) for name in LOOK}
     for name in EARTH_LINES:
-        shown[name] = shown[name] is not False
+        shown[name] = is_drawn(shown[name])
     shown["cmap"] = look.cmap
     if not isinstance(look.cmap, str):  # a colour map without a name is shown as the first one
         shown["cmap"] = CMAPS[0]

@@ -25,7 +25,7 @@ from flowtex.app.streaming.viewport import Viewport
 from flowtex.errors import FieldError
 from flowtex.field import FlowField
 from flowtex.field.options import FieldOptions
-from flowtex.host.view import CHOSEN, client_module
+from flowtex.host.view import client_module, is_choice
 from flowtex.plotting.handle import FlowHandle
 from flowtex.rendering.camera import Camera, CameraError
 from flowtex.rendering.webgl.protocol import Header
@@ -431,7 +431,7 @@ class FlowArea(AppearanceAttributes):
         del page, place  # which receives the colours as well
         changes = {}
         for name, value in mapping(choice).items():
-            if name in CHOSEN:
+            if is_choice(name, value):
                 changes[name] = value
         scene = self.viewport.scene
         with self._changed_by(""), suppress(KeyError, TypeError):

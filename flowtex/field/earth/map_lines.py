@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from flowtex._util.array_types import AnyArray, Bools, Floats, Indices
+from flowtex.field.earth.coast import Coast
 from flowtex.field.earth.projection import GLOBE, Projection
 from flowtex.field.earth.tears import between, tears
 
@@ -63,9 +64,18 @@ class MapLines:
         return MapLines(self.points[keep], np.append(0, np.cumsum(counts[counts > 0])))
 
 
-def coastlines(projection: Projection, box: Floats | None = None) -> MapLines:
-    """Return the coasts of land, larger islands and lakes in a box of the map, (2, 3)."""
-    lonlat, joined = coast_points()
+def coastlines(
+    projection: Projection, box: Floats | None = None, coast: Coast | None = None
+) -> MapLines:
+    """Return the coasts of land, larger islands and lakes in a box of the map, (2, 3).
+
+    The lines of a ``coast`` replace those of the package.
+    """
+    if coast is None:
+        lonlat, joined = coast_points()
+    else:
+        lonlat = coast.lonlat
+        joined = coast.joined
     return _mapped(projection, lonlat, joined, box)
 
 

@@ -653,7 +653,8 @@ def _on_map(ax: Axes, mesh: Any, options: Options) -> tuple[Any, Options, SameMa
         )
     name, unit = projection_of_axes(ax)
     look = options.appearance
-    look = replace(look, coastlines=bool(look.coastlines), graticule=bool(look.graticule))
+    coasts = look.coastlines or False
+    look = replace(look, coastlines=coasts, graticule=bool(look.graticule))
     options = replace(options, appearance=look)
     if not isinstance(mesh, FlowField) and not is_stored(mesh):
         field_options = replace(options.field, projection=name)

@@ -20,6 +20,7 @@ import numpy as np
 from flowtex._util.array_types import Bytes, Floats, Floats32
 from flowtex._util.colours import CMAPS, ENTRIES, ColourScale, colour_table, is_diverging
 from flowtex.field import FlowField
+from flowtex.field.earth.coast import Coast
 from flowtex.field.formula.formula import Formula
 from flowtex.field.interpolation import steps_around
 from flowtex.rendering.camera import CAMERA_LIMITS, Camera, CameraValues
@@ -87,6 +88,7 @@ class Colours:
     label: str = ""
     flat: bool = False  #: Whether the values belong to cells.
     coastlines: bool = False  #: Whether these lines are drawn on a map of the Earth.
+    coast: Coast | None = None  #: Lines in place of the coasts of the package.
     graticule: bool = False
     #: Colour from 0 to 1 of places without data on a map; ``None`` where they are not drawn.
     land: tuple[float, float, float] | None = None
@@ -262,7 +264,8 @@ class ClientData:
             parts |= self.bodies.parts(geometry)
         land = colours.land is not None
         tiled = self.pyramid is not None
-        return {**parts, **earth_parts(geometry, has_land=land, tiled=tiled)}
+        earth = earth_parts(geometry, has_land=land, tiled=tiled, coast=colours.coast)
+        return {**parts, **earth}
 
     def _places(self, pyramid: Pyramid) -> Floats32:
         """Return the places of the blocks of all levels, (N, 5), one level after the other."""
@@ -416,7 +419,8 @@ class ClientData:
 
     def _earth(self) -> Header | None:
         colours = self.colours
-        earth = earth_header(self.textures.geometry, has_land=colours.land is not None)
+        has_land = colours.land is not None
+        earth = earth_header(self.textures.geometry, has_land=has_land, coast=colours.coast)
         if earth is None:
             return None
         return {

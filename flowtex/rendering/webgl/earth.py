@@ -12,6 +12,7 @@ from flowtex._util.cache import WeakCache
 from flowtex._util.colours import rgb
 from flowtex.field import FlowField
 from flowtex.field.dates import date_text
+from flowtex.field.earth.coast import Coast
 from flowtex.field.earth.map_lines import MapLines
 from flowtex.field.earth.projection import EARTH_RADIUS, Projection
 from flowtex.rendering.map_overlay import (
@@ -47,13 +48,15 @@ class _Lines:
     parts: dict[str, AnyArray]
 
 
-def earth_header(geometry: DrawnSurface, *, has_land: bool) -> Header | None:
+def earth_header(
+    geometry: DrawnSurface, *, has_land: bool, coast: Coast | None = None
+) -> Header | None:
     """Return the part of the header about the Earth; ``None`` for a flow that is elsewhere."""
     field = geometry.field
     if field.projection is None:
         return None
     is_globe = field.projection.is_globe
-    lines = _lines_of(geometry, has_land=has_land)
+    lines = _lines_of(geometry, has_land=has_land, coast=coast)
     return {
         "radius": EARTH_RADIUS,
         "below": globe_radius(field) is not None,
@@ -73,12 +76,14 @@ def earth_header(geometry: DrawnSurface, *, has_land: bool) -> Header | None:
     }
 
 
-def earth_parts(geometry: DrawnSurface, *, has_land: bool, tiled: bool) -> Parts:
+def earth_parts(
+    geometry: DrawnSurface, *, has_land: bool, tiled: bool, coast: Coast | None = None
+) -> Parts:
     """Return the arrays of the Earth; tiles have none of their own."""
     field = geometry.field
     if field.projection is None or geometry.whole is not field.surface:
         return {}
-    parts: Parts = dict(_lines_of(geometry, has_land=has_land).parts)
+    parts: Parts = dict(_lines_of(geometry, has_land=has_land, coast=coast).parts)
     if not field.projection.is_globe:
         parts["lonlat"] = _lonlat(field.projection, map_box(field).tobytes())
     ground = ground_cells(field, tiled=tiled)
@@ -108,12 +113,12 @@ def dates_of(field: FlowField, times: Floats) -> Header:
 _lines: WeakCache[_Lines] = WeakCache()
 
 
-def _lines_of(geometry: DrawnSurface, *, has_land: bool) -> _Lines:
+def _lines_of(geometry: DrawnSurface, *, has_land: bool, coast: Coast | None) -> _Lines:
     field = geometry.field
     has_globe = has_land and globe_radius(field) is not None
 
     def make() -> _Lines:
-        lines_by_option = map_lines(field, has_globe=has_globe)
+        lines_by_option = map_lines(field, has_globe=has_globe, coast=coast)
         local = {}
         for k, v in lines_by_option.items():
             local[k] = (v.points - geometry.center) @ geometry.frame.T
@@ -126,7 +131,7 @@ def _lines_of(geometry: DrawnSurface, *, has_land: bool) -> _Lines:
                 parts[name] = _packed(lines, (local[name] - low) / np.where(size > 0, size, 1.0))
         return _Lines(low, size, parts)
 
-    return _lines.get(has_globe, make, owner=field)
+    return _lines.get((has_globe, coast), make, owner=field)
 
 
 def _packed(lines: MapLines, shares: Floats) -> AnyArray:
