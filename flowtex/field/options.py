@@ -115,11 +115,12 @@ class FieldOptions:
         'clockwise from north) or ``"angle"`` (counterclockwise from x). By default the names '
         "decide.",
     )
-    direction: str | None = option(
+    direction: str | ArrayLike | None = option(
         None,
-        "Variable with the direction of a speed, which ``vectors`` names. Its "
-        "attributes decide whether it is where the flow comes from or goes to, clockwise from "
-        "north, or an angle counterclockwise from x.",
+        "Variable with the direction of a speed, which ``vectors`` names, or for a speed in an "
+        "array an array of angles. Attributes, names or ``components`` decide whether it is where "
+        "the flow comes from or goes to, clockwise from north, or an angle counterclockwise from "
+        "x.",
     )
     max_edge: float | str | None = option(
         None,
@@ -169,10 +170,7 @@ class FieldOptions:
         if self.direction is None:
             return
         if not isinstance(self.direction, str):
-            raise FieldError(
-                f"direction is {brief(self.direction)}; expected the name of a variable. Of arrays "
-                "pass the components, as u + 1j * v = speed * np.exp(1j * angle)"
-            )
+            return
         if self.v is not None or self.w is not None:
             raise FieldError(
                 f"direction is {self.direction!r} and components are named too; expected the speed "

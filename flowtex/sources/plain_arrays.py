@@ -13,12 +13,18 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from flowtex._util.host_arrays import host_array, is_array
-from flowtex.errors import FieldError, import_extra
+from flowtex._util.arguments import brief
+from flowtex._util.array_types import AnyArray
+from flowtex._util.host_arrays import host_array, is_array, unit_text
+from flowtex.errors import FieldError, import_extra, notify
+from flowtex.field import units
 from flowtex.field.field import FlowField
 from flowtex.field.options import FieldOptions
 from flowtex.field.plain_arrays import PlainFlow, read_plain
 from flowtex.field.validation import with_gaps
+from flowtex.remedies import Remedy, sentence
+from flowtex.sources.datasets.directions import BY_WORD, MEANINGS, MOST_RADIANS
+from flowtex.sources.datasets.directions import in_components as components_of
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -68,13 +74,21 @@ def read_arrays(data: Any, options: FieldOptions, scalars: Mapping[str, Any]) ->
     is_named = isinstance(data, Mapping) or _has_files(data) or _fields_of(data) is not None
     if is_named:
         return _read_named(data, options, scalars)
-    _refuse_direction(options)
     if options.vectors is not None:
         raise FieldError(f"vectors is {options.vectors!r}, but the arrays have no names; omit it")
     if isinstance(data, tuple):
         arrays = data
     else:
         arrays = (data,)
+    if isinstance(options.direction, str):
+        raise FieldError(
+            f"direction is {options.direction!r}, but the arrays have no names; expected an array "
+            "of angles, as in flowtex.show(x, y, speed, direction=angle)"
+        )
+    if options.direction is not None:
+        *places, speed = arrays
+        arrays = (*_positions(places), *in_components(speed, options.direction, options))
+        options = _without_angle(options)
     return _field(read_plain(arrays), options, scalars)
 
 
@@ -130,14 +144,57 @@ def _labelled_field(
     return FlowField.from_xarray(data, **_without(chosen, "uncertainty"))
 
 
-def _refuse_direction(options: FieldOptions) -> None:
-    """Raise a FieldError if ``direction`` is given, which only data with names have."""
-    if options.direction is not None:
+def _positions(places: list[Any]) -> tuple[Any, ...]:
+    """Return x and y of the arrays before a speed."""
+    if len(places) == 1 and isinstance(places[0], tuple):
+        return places[0]
+    if len(places) in (0, 2):
+        return tuple(places)
+    raise FieldError(
+        f"{len(places) + 1} arrays are given beside direction; expected a speed, or x, y and a "
+        "speed, as in flowtex.show(x, y, speed, direction=angle)"
+    )
+
+
+def in_components(speed: Any, angle: Any, options: FieldOptions) -> tuple[AnyArray, AnyArray]:
+    """Return the components of a speed along angles, by default counterclockwise from x.
+
+    Angles without a unit that are all within 2π are radians, others degrees.
+
+    Raises
+    ------
+    FieldError
+        When the shapes differ, or ``components`` is for components.
+    """
+    length = host_array("the speed", speed)
+    turn = host_array("direction", angle)
+    if np.iscomplexobj(length) or np.iscomplexobj(turn) or length.shape != turn.shape:
         raise FieldError(
-            f"direction is {options.direction!r}, a variable of a dataset or a column of a table. "
-            "Of these arrays pass the components, as in flowtex.show(x, y, speed * np.exp(1j * "
-            "angle)) for an angle in radians from x"
+            f"the speed has shape {length.shape} and direction {turn.shape}; expected one shape, "
+            "and real numbers"
         )
+    word = options.components
+    if word is None:
+        word = "angle"
+        text = "direction is an angle counterclockwise from x, as nothing says otherwise"
+        goes = Remedy("components", "to", f"if it is {MEANINGS['to']},")
+        comes = Remedy("components", "from", f"if it is {MEANINGS['from']},")
+        notify(sentence(text, (goes, comes)), remedies=(goes, comes))
+    if word not in BY_WORD:
+        expected = ", ".join(f"{key!r} ({words})" for key, words in MEANINGS.items())
+        raise FieldError(f"components is {word!r} beside direction; expected {expected}")
+    unit = unit_text(angle) or "degree"
+    if not unit_text(angle) and np.nanmax(np.abs(turn), initial=0.0) <= MOST_RADIANS:
+        unit = "radian"
+    factor = units.factor(unit, "radian")
+    if factor is None:
+        raise FieldError(f"direction has the unit {unit!r}; expected degrees or radians")
+    return components_of(BY_WORD[word], length, turn * factor, None)
+
+
+def _without_angle(options: FieldOptions) -> FieldOptions:
+    """Return the options of components that a speed and its angles gave."""
+    return replace(options, direction=None, components=None)
 
 
 def _without(options: FieldOptions, name: str) -> dict[str, Any]:
@@ -227,7 +284,6 @@ def _read_named(data: Any, options: FieldOptions, scalars: Mapping[str, Any]) ->
         columns = {key: host_array(key, data[key]) for key in known.values()}
         frame = import_extra("pandas", "xarray").DataFrame(columns)
         return FlowField.from_xarray(frame, **_without(options, "uncertainty"))
-    _refuse_direction(options)
     lon_lat = _first(EARTH_PLACES, known)
     places = _first(PLACES, known) or lon_lat
     velocity = _velocity_names(options.vectors, known)
@@ -236,7 +292,11 @@ def _read_named(data: Any, options: FieldOptions, scalars: Mapping[str, Any]) ->
             f"the arrays are named {', '.join(keys)}; expected x, y, u and v. Name the components, "
             "as in vectors='vx,vy', or pass the arrays by position: x, y, u, v"
         )
-    flow = read_plain(_by_position([data[key] for key in places], [data[key] for key in velocity]))
+    parts = [data[key] for key in velocity]
+    if options.direction is not None:
+        parts = list(in_components(*_speed_and_angle(data, velocity, options), options))
+        options = _without_angle(options)
+    flow = read_plain(_by_position([data[key] for key in places], parts))
     shape = np.shape(flow.velocity)[:-1]
     steps = shape[:-2]
     nodal = {}
@@ -265,6 +325,18 @@ def _by_position(places: list[Any], velocity: list[Any]) -> tuple[Any, ...]:
     if not places:
         return (joined,)
     return (tuple(places), joined)
+
+
+def _speed_and_angle(data: Any, names: tuple[str, ...], options: FieldOptions) -> tuple[Any, Any]:
+    """Return the arrays of a speed and its direction, which the user names or gives."""
+    if options.vectors is None:
+        raise FieldError(
+            f"direction is {brief(options.direction)}; name the speed as well, as in "
+            'vectors="speed", direction="angle"'
+        )
+    if isinstance(options.direction, str):
+        return data[names[0]], data[names[-1]]
+    return data[names[0]], options.direction
 
 
 def _velocity_names(vectors: str | None, known: Mapping[str, str]) -> tuple[str, ...]:

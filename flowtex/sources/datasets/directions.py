@@ -27,6 +27,8 @@ TOWARDS = "direction towards"
 #: Kinds whose second variable is an angle.
 ANGULAR = (ANGLE, FROM, TOWARDS)
 
+#: Greatest angle in radians.
+MOST_RADIANS = 2 * np.pi + 1e-3
 #: Kinds by the words for them in ``components=``.
 BY_WORD = {"angle": ANGLE, "from": FROM, "to": TOWARDS}
 #: Meanings of these words.

@@ -83,8 +83,6 @@ CURVED = {
 
 #: Coordinates of models whose components are along the grid: WRF, NEMO, ROMS, POP, MITgcm, MOM.
 MODELS = re.compile(r"XLONG|nav_lon|lon_(rho|u|v|psi)\b|glam|[TU]_?LONG?|XC|XG|geolon")
-#: Greatest angle in radians.
-MOST_RADIANS = 2 * np.pi + 1e-3
 #: The other directions of components that are taken along the grid.
 EASTWARD = Remedy("components", "earth", "if they are eastward and northward,")
 #: The reason where neither names nor positions tell.
@@ -152,7 +150,7 @@ def _angle_factor(pair: Pair, record: Record) -> float:
         first = array.isel({d: 0 for d in array.dims if d not in horizontal_dims(array)})
         greatest = float(np.nanmax(np.abs(values_in(first)), initial=0.0))
         name = "degree"
-        if greatest <= MOST_RADIANS:
+        if greatest <= directions.MOST_RADIANS:
             name = "radian"
         factor = units.factor(name, "radian") or 1.0
     meaning = {

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, TypeAlias
 
 import numpy as np
 
-from flowtex._util.arguments import near_names
+from flowtex._util.arguments import brief, near_names
 from flowtex._util.array_types import Floats
 from flowtex.errors import FieldError
 from flowtex.field import units
@@ -95,6 +95,11 @@ def read_datasets(
         can be drawn.
     """
     options.refuse(OF_MESHES, "meshes, but this is a dataset")
+    if not isinstance(options.direction, str | None):
+        raise FieldError(
+            f"direction is {brief(options.direction)}; expected the name of a variable of the "
+            "dataset. Add the angles to it, as in ds['angle'] = (ds.speed.dims, angle)"
+        )
     projection = _projection(options)
     uncertainty = options.uncertainty
     record = Record()

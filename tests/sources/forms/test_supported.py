@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import array_files
 import declared_files
 import direction_files
 import global_files
@@ -18,6 +19,7 @@ from supported import ROWS, Supported, drawn
 
 pytest.importorskip("pyproj")
 MODULES = (
+    array_files,
     declared_files,
     direction_files,
     global_files,
