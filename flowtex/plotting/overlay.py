@@ -20,6 +20,7 @@ from vtkmodules.vtkRenderingCore import vtkCamera
 from flowtex._util.array_types import Bools, Floats
 from flowtex._util.forks import renew_after_fork
 from flowtex._util.progress import pool
+from flowtex.field.earth.coast import Coast
 from flowtex.rendering.camera import read_camera
 from flowtex.rendering.map_overlay import (
     SPACING_PX,
@@ -209,7 +210,9 @@ class MapOverlay(Overlay):
         """Follow the appearance, and the coarsest level of a large field."""
         if self._field is not scene.whole:
             self._field = scene.whole
-            self._lines: dict[tuple[str, bool], tuple[tuple[float, pv.PolyData], ...]] = {}
+            self._lines: dict[
+                tuple[str, bool, Coast | None], tuple[tuple[float, pv.PolyData], ...]
+            ] = {}
         self._clear()
         self._missing: list[pv.Actor] = []
         self._scene = scene

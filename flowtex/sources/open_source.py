@@ -21,13 +21,14 @@ from flowtex.errors import FieldError, Notice
 from flowtex.field.earth.projection import GLOBE, NAMES
 from flowtex.field.field import FlowField
 from flowtex.field.options import FieldOptions
-from flowtex.sources.datasets.axes import axis_values
+from flowtex.sources.datasets.axes import TIME, axis_values
 from flowtex.sources.datasets.flow import read_flow
 from flowtex.sources.datasets.select import find_pairs, two_names, variable
 from flowtex.sources.maps import projection_of
 from flowtex.sources.meshes import parts
 from flowtex.sources.meshes.series import limited, wall_stress
 from flowtex.sources.meshes.vectors import candidates
+from flowtex.sources.models.drifters import moments_of
 from flowtex.sources.notices import DatasetNotice, Record
 from flowtex.sources.opening.dataset_files import (
     as_datasets,
@@ -35,6 +36,7 @@ from flowtex.sources.opening.dataset_files import (
     dataset_paths,
     open_datasets,
 )
+from flowtex.sources.opening.tables import as_dataset
 from flowtex.sources.read_files import Identity, one_path, open_file
 from flowtex.sources.reader_errors import errors_of_file
 
@@ -365,6 +367,9 @@ class DatasetSource(FlowSource):
     def __init__(self, datasets: Any, *, name: str = "") -> None:
         super().__init__(name)
         self._datasets = as_datasets(datasets)
+        #: Trajectories before they become points at one time, and the times to choose from.
+        self._tracks = datasets
+        self._moments, fullest = _moments_of(datasets)
         pairs = find_pairs(self._datasets)
         likely = [pair for pair in pairs if pair.rank == pairs[0].rank]
         if pairs:
@@ -385,6 +390,9 @@ class DatasetSource(FlowSource):
         self.axes = axis_values(first)
         if name := next(iter(self.axes), ""):
             self.default_plane = f"{name}={flow.drawn.numbers.get(name, 0)}"
+        if len(self._moments) > 1:
+            self.axes = {TIME: tuple(map(_moment_text, self._moments))}
+            self.default_plane = f"{TIME}={fullest}"
         self._datasets.close()
 
     def part(self, block: str | None = None) -> FlowSource:
@@ -407,13 +415,37 @@ class DatasetSource(FlowSource):
         u, _ = two_names(vectors)
         axis, _, number = (plane or self.default_plane).partition("=")
         array = next((ds[u] for ds in self._datasets if u in ds), None)
-        if array is not None and axis in axis_values(array):
+        data = self._datasets
+        if axis == TIME and len(self._moments) > 1:
+            options["sel"] = {**(options.get("sel") or {}), axis: self._moments[int(number)]}
+            data = self._tracks
+        elif array is not None and axis in axis_values(array):
             options["isel"] = {**(options.get("isel") or {}), axis: int(number)}
         options |= {"vectors": vectors, "projection": block or None, "name": self.name}
         with warnings.catch_warnings():
             # The page shows the choices.
             warnings.simplefilter("ignore", DatasetNotice)
-            return FlowField.from_xarray(self._datasets, **options)
+            return FlowField.from_xarray(data, **options)
+
+
+def _moments_of(datasets: Any) -> tuple[list[Any], int]:
+    """Return the times of trajectories among datasets, and the number of the fullest one."""
+    several = isinstance(datasets, (list, tuple))
+    for item in datasets if several else [datasets]:
+        try:
+            found = moments_of(as_dataset(item, several=several))
+        except FieldError:  # such as a tree
+            continue
+        if found[0]:
+            return found
+    return [], 0
+
+
+def _moment_text(moment: Any) -> str:
+    """Return a time of trajectories as a page shows it."""
+    if isinstance(moment, str):
+        return moment.replace("T", " ")
+    return f"{moment:g}"
 
 
 def open_source(path: str | Path | Sequence[str | Path]) -> FlowSource:

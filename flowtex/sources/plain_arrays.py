@@ -286,7 +286,7 @@ def _read_named(data: Any, options: FieldOptions, scalars: Mapping[str, Any]) ->
         return FlowField.from_xarray(frame, **_without(options, "uncertainty"))
     lon_lat = _first(EARTH_PLACES, known)
     places = _first(PLACES, known) or lon_lat
-    velocity = _velocity_names(options.vectors, known)
+    velocity = _velocity_names(options, known)
     if not velocity:
         raise FieldError(
             f"the arrays are named {', '.join(keys)}; expected x, y, u and v. Name the components, "
@@ -329,18 +329,19 @@ def _by_position(places: list[Any], velocity: list[Any]) -> tuple[Any, ...]:
 
 def _speed_and_angle(data: Any, names: tuple[str, ...], options: FieldOptions) -> tuple[Any, Any]:
     """Return the arrays of a speed and its direction, which the user names or gives."""
-    if options.vectors is None:
-        raise FieldError(
-            f"direction is {brief(options.direction)}; name the speed as well, as in "
-            'vectors="speed", direction="angle"'
-        )
     if isinstance(options.direction, str):
         return data[names[0]], data[names[-1]]
     return data[names[0]], options.direction
 
 
-def _velocity_names(vectors: str | None, known: Mapping[str, str]) -> tuple[str, ...]:
+def _velocity_names(options: FieldOptions, known: Mapping[str, str]) -> tuple[str, ...]:
     """Return the names of the components, those that the user names first."""
+    vectors = options.vectors
+    if options.direction is not None and vectors is None:
+        raise FieldError(
+            f"direction is {brief(options.direction)}; name the speed as well, as in "
+            'vectors="speed", direction="angle"'
+        )
     if vectors is None:
         return _first(VELOCITIES, known)
     names = tuple(name.strip() for name in vectors.split(","))

@@ -111,3 +111,25 @@ def test_page_of_arrays_reports_nothing() -> None:
     app = small_page(small())
     assert app.state.get("choices") == []
     app.close()
+
+
+def test_time_of_drifters_is_chosen_by_the_slider(tmp_path: Path) -> None:
+    """Points move along x by one per hour; at hour 0 there are too few of them."""
+    rows = ["id,time,x,y"]
+    places = np.random.default_rng(2).uniform(0, 5, (40, 2))
+    for number, (x, y) in enumerate(places):
+        for hour in range(number % 3 // 2, 6):
+            rows.append(f"{number},2024-01-01T0{hour}:00:00,{x + hour:.6f},{y:.6f}")
+    path = tmp_path / "drifters.csv"
+    path.write_text("\n".join(rows))
+    app = small_page(path)
+    try:
+        assert app.state.get("axes") == ["time"] and app.state.get("planes") == 4
+        assert app.state.get("plane_text") == "2024-01-01 01:00"
+        source = app.data._current.source
+        for number in (1, 3):
+            field = source.field(plane=f"time={number}")
+            found = np.sort(field.points[0, :, 0])
+            assert found == pytest.approx(np.sort(places[:, 0] + number + 1), abs=1e-5)
+    finally:
+        app.close()

@@ -13,7 +13,7 @@ import pytest
 
 from flowtex.errors import FieldError
 from flowtex.field.earth.coast import Coast
-from flowtex.scene.options import Appearance, Options
+from flowtex.scene.options import Appearance, Options, coast_of
 from flowtex.sources.coast_files import as_coast
 
 pyproj = pytest.importorskip("pyproj")
@@ -59,7 +59,7 @@ def lies_on(line: Any, corners: Any) -> bool:
 )
 def test_geojson_gives_its_lines(kind: str, coordinates: Any, tmp_path: Path) -> None:
     coast = as_coast(written(tmp_path, feature(kind, coordinates), feature("Point", [0, 0])))
-    flat = {
+    flat: dict[str, Any] = {
         "LineString": lambda: [coordinates],
         "MultiLineString": lambda: coordinates,
         "Polygon": lambda: coordinates,
@@ -161,8 +161,9 @@ def test_lines_stay_when_they_are_hidden_and_shown(tmp_path: Path) -> None:
     look = Options.split(coastlines=written(tmp_path, feature("LineString", LINE))).appearance
     hidden = look.changed(coastlines=False)
     again = hidden.changed(coastlines=True)
+    first, last = coast_of(look), coast_of(again)
     assert not hidden.coastlines and again.coastlines
-    assert again.coastlines.lonlat is look.coastlines.lonlat
+    assert first is not None and last is not None and last.lonlat is first.lonlat
 
 
 def test_appearance_reads_no_files(tmp_path: Path) -> None:

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from flowtex import FieldError, FlowField
+from flowtex.errors import Notice
 from flowtex.field.options import FieldOptions
 from flowtex.scene.fields import DATA, read_field
 from flowtex.scene.options import Options
@@ -169,7 +170,7 @@ def test_other_arguments_of_arrays_are_refused() -> None:
         read(LINE_X, LINE_Y, U, V, vectors="u,v")
     named = {"x": LINE_X, "y": LINE_Y, "speed": np.hypot(U, V), "angle": np.arctan2(V, U)}
     for arrays in ((named,), tuple(named.values())):
-        with pytest.raises(FieldError, match=r"direction is 'angle'.* speed \* np.exp\(1j \* ang"):
+        with pytest.raises(FieldError, match=r"direction is 'angle'; name the speed as well"):
             read(*arrays, direction="angle")
     with pytest.raises(FieldError, match=r"u is array.*; expected the name of an array. Pass"):
         FieldOptions(u=U, v=V)  # type: ignore[arg-type]
@@ -179,3 +180,52 @@ def test_other_arguments_of_arrays_are_refused() -> None:
         read(np.stack([X, Y], -1), np.stack([U, V], -1))
     assert read(LINE_X, LINE_Y, U, V, sign_free=True).sign_free
     assert read(LINE_X, LINE_Y, U, V, periodic="i").periodic == (False, True)
+
+
+#: Angles of a direction by the words for them in ``components``.
+ANGLES = {
+    "angle": lambda u, v: np.arctan2(v, u),
+    "to": lambda u, v: np.degrees(np.arctan2(u, v)) % 360,
+    "from": lambda u, v: np.degrees(np.arctan2(-u, -v)) % 360,
+}
+
+
+@pytest.mark.parametrize("word", ANGLES)
+@pytest.mark.parametrize("form", ["position", "names", "velocity alone", "times"])
+def test_speed_and_direction_are_components(word: str, form: str) -> None:
+    x, y = np.linspace(0, 3, 9), np.linspace(0, 2, 7)
+    across, upward = np.meshgrid(x, y)
+    u, v = 1 + upward, 2 - across
+    if form == "times":
+        u, v = np.stack([u, 2 * u]), np.stack([v, -v])
+    angle, speed = ANGLES[word](u, v), np.hypot(u, v)
+    options: dict[str, Any] = {"direction": angle, "components": word}
+    data: Any = (x, y, speed)
+    if form == "names":
+        data = {"x": x, "y": y, "ff": speed, "dd": angle}
+        options |= {"vectors": "ff", "direction": "dd"}
+    if form == "velocity alone":
+        data = speed
+    field = read_field(data, FieldOptions(**options))
+    np.testing.assert_allclose(field.velocity[..., 0].squeeze(), u, atol=1e-12)
+    np.testing.assert_allclose(field.velocity[..., 1].squeeze(), v, atol=1e-12)
+
+
+def test_meaning_of_a_direction_is_reported_unless_named() -> None:
+    speed, angle = np.ones((4, 5)), np.full((4, 5), 30.0)
+    with pytest.warns(Notice, match='counterclockwise from x, .*components="to".*"from"') as told:
+        read_field(speed, FieldOptions(direction=angle))
+    assert len(told) == 1
+
+
+@pytest.mark.parametrize(
+    ("options", "told"),
+    [
+        ({"direction": np.ones((3, 3))}, r"the speed has shape \(4, 5\) and direction \(3, 3\)"),
+        ({"direction": "dd"}, "the arrays have no names; expected an array of angles"),
+        ({"direction": np.ones((4, 5)), "components": "polar"}, "components is 'polar' beside"),
+    ],
+)
+def test_direction_that_does_not_fit_raises(options: dict[str, Any], told: str) -> None:
+    with pytest.raises(FieldError, match=told):
+        read_field(np.ones((4, 5)), FieldOptions(**options))

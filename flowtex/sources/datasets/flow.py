@@ -440,7 +440,10 @@ def _record_pair(pair: Pair, datasets: Datasets, options: FieldOptions, record: 
 def _chosen(datasets: Datasets, choice: Choice, options: FieldOptions) -> tuple[Datasets, Pair]:
     """Return the velocity, and the datasets in the form that its kind requires."""
     first, second = select.two_names(options.vectors)
-    pair = select.choose_pair(datasets, first, second, options.direction)
+    direction = options.direction
+    if not isinstance(direction, str):
+        direction = None
+    pair = select.choose_pair(datasets, first, second, direction)
     joined = join_faces(datasets, pair, {*choice.sel, *choice.isel}, options.components)
     if joined is not None:
         datasets = Datasets(joined, datasets.closers)

@@ -95,11 +95,7 @@ def read_datasets(
         can be drawn.
     """
     options.refuse(OF_MESHES, "meshes, but this is a dataset")
-    if not isinstance(options.direction, str | None):
-        raise FieldError(
-            f"direction is {brief(options.direction)}; expected the name of a variable of the "
-            "dataset. Add the angles to it, as in ds['angle'] = (ds.speed.dims, angle)"
-        )
+    _check_direction(options)
     projection = _projection(options)
     uncertainty = options.uncertainty
     record = Record()
@@ -137,6 +133,15 @@ def read_datasets(
     record.notify()
     datasets.close()
     return arrays
+
+
+def _check_direction(options: FieldOptions) -> None:
+    """Raise a FieldError for an array of angles, which has no place in a dataset."""
+    if not isinstance(options.direction, str | None):
+        raise FieldError(
+            f"direction is {brief(options.direction)}; expected the name of a variable of the "
+            "dataset. Add the angles to it, as in ds['angle'] = (ds.speed.dims, angle)"
+        )
 
 
 def _projection(options: FieldOptions) -> str | None:

@@ -63,11 +63,6 @@ def read_meshes(mesh: Any, options: FieldOptions, *, name: str = "") -> GridArra
     """
     record = Record()
     options.refuse(OF_EARTH, "datasets, but this is a mesh")
-    if options.mask not in (None, False):
-        raise FieldError(
-            f"mask is {options.mask!r}; of a mesh expected False, which draws fill values too, or "
-            "none. To hide nodes, set their velocity to NaN"
-        )
     plane, periodic, sign_free = options.plane, options.periodic, bool(options.sign_free)
     if (preference := options.preference or "point") not in ("point", "cell"):
         raise FieldError(f'preference is {preference!r}; expected "point" or "cell"')
@@ -96,11 +91,11 @@ def read_meshes(mesh: Any, options: FieldOptions, *, name: str = "") -> GridArra
     times = options.times
     count = len(mesh) if isinstance(mesh, (list, tuple)) else len(parts.times_of(mesh))
     ranges = volume.VolumeValues(velocity, chosen or cut, count, preference)
-    masks = Masks(stored, keeps_fills=options.mask is False)
     every = chain([first], steps)
-    arrays = _stacked(every, read_as, masks, draw, times, preference, record, ranges)
-    for unit in OF_UNITS:
-        arrays[unit] = getattr(options, unit) or ""
+    arrays = _stacked(
+        every, read_as, _masks(stored, options), draw, times, preference, record, ranges
+    )
+    arrays |= {unit: getattr(options, unit) or "" for unit in OF_UNITS}
     record.notify()
     arrays |= {"name": name, "reading": record.reading, "vectors": velocity.name}
     arrays["volume_values"] = ranges.values()
@@ -109,6 +104,16 @@ def read_meshes(mesh: Any, options: FieldOptions, *, name: str = "") -> GridArra
     if chosen is not None:
         return GridArrays(**arrays, periodic=periodic, sign_free=sign_free)
     return TriangleArrays(**arrays)
+
+
+def _masks(velocity: MeshArray, options: FieldOptions) -> Masks:
+    """Return the masks of a velocity, which hide its fill values unless ``mask`` is ``False``."""
+    if options.mask not in (None, False):
+        raise FieldError(
+            f"mask is {options.mask!r}; of a mesh expected False, which draws fill values too, or "
+            "none. To hide nodes, set their velocity to NaN"
+        )
+    return Masks(velocity, keeps_fills=options.mask is False)
 
 
 def _cut_of(options: FieldOptions) -> Cut | None:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
-from flowtex._util.array_types import Floats
+from flowtex._util.array_types import Floats, Indices
 from flowtex.errors import FieldError, import_extra
 from flowtex.field.dates import span_since
 from flowtex.field.earth.projection import EARTH_RADIUS
@@ -31,6 +31,8 @@ if TYPE_CHECKING:
 GAP = 5.0
 #: Most times among which the one with most trajectories is searched.
 MOST_TIMES = 2000
+#: Most times that the app lists.
+MOST_LISTED = 200
 #: Names of the differences of positions in time, in the unit of the positions.
 MOTION = ("x_change", "y_change")
 
@@ -118,14 +120,38 @@ def _fullest_time(tracks: Tracks, without: float | None = None) -> float:
 
     The time ``without`` is returned only if there is no other.
     """
+    times, counts = _counted_times(tracks)
+    counts = np.where(times == without, -1, counts)
+    return float(times[np.argmax(counts)])
+
+
+def _counted_times(tracks: Tracks) -> tuple[Floats, Indices]:
+    """Return observed times, (N,), and how many trajectories span each of them."""
     begins = np.sort(tracks.times[tracks.first[:-1]])
     ends = np.sort(tracks.times[tracks.first[1:] - 1])
     times = np.unique(tracks.times)
     times = times[:: -(-len(times) // MOST_TIMES)]
     begun = np.searchsorted(begins, times, side="right")
     ended = np.searchsorted(ends, times, side="left")
-    counts = np.where(times == without, -1, begun - ended)
-    return float(times[np.argmax(counts)])
+    return times, begun - ended
+
+
+def moments_of(ds: xr.Dataset) -> tuple[list[Any], int]:
+    """Return times at which trajectories can be drawn, and the number of the fullest one.
+
+    They are observed times with enough trajectories, as users type them; none for other data.
+    """
+    parts = find_trajectories(ds)
+    if parts is None:
+        return [], 0
+    tracks = Tracks.of(ds, parts)
+    fullest = _fullest_time(tracks)
+    times, counts = _counted_times(tracks)
+    chosen = times[counts >= FEWEST]
+    chosen = chosen[:: max(-(-len(chosen) // MOST_LISTED), 1)]
+    chosen = np.union1d(chosen, fullest)
+    moments = [_typed_time(tracks, float(time)) for time in chosen]
+    return moments, int(np.searchsorted(chosen, fullest))
 
 
 def _typed_time(tracks: Tracks, time: float) -> Any:

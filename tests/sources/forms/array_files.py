@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 
@@ -160,8 +161,7 @@ def polars_table(folder: Path) -> Made:
     "geopandas",
 )
 def geopandas_table(folder: Path) -> Made:
-    import geopandas
-
+    geopandas = import_module("geopandas")
     lon, lat = (part.ravel() for part in np.meshgrid(LON, LAT))
     u, v = wind(lon, lat)
     shapes = geopandas.points_from_xy(lon, lat)
@@ -241,7 +241,7 @@ def faces_by_name(folder: Path) -> Made:
     places, faces = points()
     u, v = plane(*places.T)
     unit = {"units": "m/s"}
-    columns = {"u": ("node", u, unit), "v": ("node", v, unit)}
+    columns: dict[str, Any] = {"u": ("node", u, unit), "v": ("node", v, unit)}
     for name, place in zip("xy", places.T, strict=True):
         columns[name] = ("node", place, {"units": "m"})
     columns["triangles"] = (("face", "corner"), faces.astype("i4") + 1)
