@@ -46,6 +46,12 @@ class Told(FlowWidget):
         """Keep arrays by name, and errors."""
         told = self.__dict__.setdefault("_told", {})
         assert content["kind"] != "error", content
+        generation = content.get("generation")
+        if generation is not None and generation != self.__dict__.get("_generation"):
+            # The client drops the parts of single times with the scene that they belong to.
+            self.__dict__["_generation"] = generation
+            for name in [name for name in told if "/" in name]:
+                del told[name]
         for info, data in zip(content.get("parts", ()), buffers or (), strict=True):
             told[info["name"]] = np.frombuffer(data, info["dtype"]).reshape(info["shape"])
 
