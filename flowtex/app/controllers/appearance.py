@@ -233,18 +233,28 @@ class Appearance(Controller):
         if not name_among(look.get("cmap"), CMAPS):
             look.pop("cmap", None)
         first_name = self.first["colour"]
-        names = (PLAIN, *self.area.scene.scalar_names)
         name = saved.get("colour", first_name)
-        if not name_among(name, names):
-            if first_name in names:
-                name = first_name
-            else:
-                name = SPEED
+        if not self._can_colour_by(name):
+            name = first_name
+        if not self._can_colour_by(name):
+            name = SPEED
         if name != first_name:
             look = {"clim": None, **look, "scalars": name}
             if name == PLAIN:
                 look["scalars"] = False
         return self._first_look.changed(**look)
+
+    def _can_colour_by(self, name: Any) -> bool:
+        """Return whether the flow has a scalar of a name, also a derived one, or it is PLAIN."""
+        if not isinstance(name, str):
+            return False
+        if name == PLAIN or name in self.area.scene.scalar_names:
+            return True
+        try:
+            self.area.scene.scalar_steps(name)
+        except FieldError:
+            return False
+        return True
 
     def _comparisons(self) -> list[str]:
         """Return the names of all comparisons that the page offers for the present flow."""

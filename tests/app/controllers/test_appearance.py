@@ -74,3 +74,17 @@ def test_a_saved_look_comes_back_as_a_whole(flat: FlowApp) -> None:
     assert (area.scalars, area.cmap, area.opacity) == ("speed", "viridis", 1.0)
     assert area.clim is None and not area.log_scale
     area.scene.appearance = before
+
+
+@pytest.mark.parametrize("name", ["vorticity", "velocity_x"])
+def test_a_derived_scalar_that_was_not_shown_before_comes_back(flat: FlowApp, name: str) -> None:
+    area, appearance = flat.area, flat.appearance
+    before = area.scene.appearance
+    assert name not in area.scene.scalar_names
+    split = f"Colour by: {name}"
+    appearance.restore({"colour": name, "split": split})
+    assert area.scalars == name
+    assert appearance.compared == split
+    flat.state.set(compare="nothing")
+    appearance.take_comparison()
+    area.scene.appearance = before
