@@ -27,8 +27,19 @@ if TYPE_CHECKING:
 REQUEST_TIMEOUT_S = 60.0
 #: Bytes of a file that extend the limit by a second.
 BYTES_PER_S = 10e6
-#: Endings of the formats that are read so.
-SUFFIXES = (".case",)
+#: Endings of the formats that are read so. A few bytes of text crash their readers.
+SUFFIXES = (
+    ".case",
+    ".dem",
+    ".inp",
+    ".nek5000",
+    ".neu",
+    ".p3d",
+    ".pts",
+    ".res",
+    ".segy",
+    ".sgy",
+)
 HANDLER = "flowtex.sources.meshes.separate:Handler"
 PRELOAD = ("flowtex.sources.meshes.separate", "pyvista", "vtkmodules.vtkIOEnSight")
 #: Kinds of arrays of a mesh that VTK marks as the active ones.
@@ -134,7 +145,8 @@ class Handler:
             self._reader = pv.get_reader(path)
 
     def _times(self, _: float | None) -> Answer:
-        return [float(time) for time in self._reader.time_values or []], []
+        times = getattr(self._reader, "time_values", None) or []  # not all formats have times
+        return list(map(float, times)), []
 
     def _read(self, time: float | None) -> Answer:
         if time is not None:
