@@ -321,10 +321,11 @@ TABLE_OF_CALLS: dict[Callable[..., object], list[tuple[Any, str]]] = {
         ({"cmap": 3}, "the colour map 3 does not exist; expected a name"),
         ({"color": "greyy"}, "greyy"),
         ({"axes": "bar"}, "axes is 'bar'; expected 'ticks', 'scale', 'none', or None"),
+        ({"coastlines": "10m"}, "coastlines is '10m', which does not exist; expected True, False"),
         ({"opacity": -1, "clim": -3}, "2 things are ... opacity is -1; ... clim is -3;"),
         *(
             ({name: "10m"}, f"{name} is '10m'; expected True or False")
-            for name in ("coastlines", "graticule", "lighting", "visible")
+            for name in ("graticule", "lighting", "visible")
         ),
     ],
     partial(Scene.of, plane()): [

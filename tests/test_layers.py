@@ -34,7 +34,7 @@ LOAD_SLOW = (
     "_util.zarr_internals",
     "_util.zarr_stores",
 )
-MAX_ENTRIES = 20
+MAX_ENTRIES = 21
 
 
 def test_package_has_few_entries() -> None:

@@ -71,4 +71,6 @@ def test_a_mesh_of_such_a_format_is_read(tmp_path: Path) -> None:
     corners = {(x, y) for x, y, _ in np.round(field.points[0], 6).reshape(-1, 3).tolist()}
     assert corners == {(0, 0), (2, 0), (2, 1), (0, 1)}
     for x, y, u in ((0, 0, 1.0), (2, 0, 1.5), (2, 1, 2.0), (0, 1, 2.5)):
-        assert field.at(x, y).speed == pytest.approx(np.hypot(u, 0.5), rel=1e-6)
+        point = field.at(x, y)
+        assert point is not None
+        assert point.speed == pytest.approx(np.hypot(u, 0.5), rel=1e-6)
