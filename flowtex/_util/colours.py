@@ -337,7 +337,7 @@ def norm_scale(norm: Any, cmap: Any, **beyond: Any) -> ColourScale:
 
     def places(values: Floats) -> Floats:
         found = norm(values)
-        filled = np.ma.filled(np.ma.asarray(found, dtype=float), np.nan)
+        filled: Floats = np.ma.filled(np.ma.asarray(found, dtype=float), np.nan)
         if np.asarray(found).dtype.kind in "iu":  # numbers of colours
             filled /= cmap.N
         return filled

@@ -261,7 +261,7 @@ class LateGaps:
     def __call__(self, step: int) -> Floats:
         """Return the components of a step, (2, ...)."""
         values = self.read(step)
-        known = np.isfinite(values).all(axis=0)
+        known = np.asarray(np.isfinite(values).all(axis=0))
         if step == 0:
             self.first = known
         elif self.first is not None and not self.is_told:

@@ -201,7 +201,7 @@ class Clusters:
         key = np.rint(np.log2(self.sides / self.sides.min())).astype(np.int64)
         for axis in range(3):
             key = key * (int(at[:, axis].max()) + 1) + at[:, axis]
-        return key
+        return np.asarray(key)
 
     def _bins(self, edge: Indices) -> Indices:
         """Return the bin of each node, (n,), all of whose nodes face alike."""

@@ -161,7 +161,7 @@ def test_two_sides_of_a_rough_sheet_stay_apart(
     lower = points - [0, 0, 0.3]
     both = np.concatenate([points, lower]), np.concatenate([triangles, below[triangles[:, ::-1]]])
     field = flow_on(*both)
-    is_lower = np.isin(field.points[0].round(9), lower.round(9)).all(axis=1)
+    is_lower = np.asarray(np.isin(field.points[0].round(9), lower.round(9)).all(axis=1))
     x, y = field.points[0, :, :2].T
     inside = (np.minimum(x, y) > 20) & (np.maximum(x, y) < 40)
     for level in levels_of(field, 600)[1:]:
