@@ -279,7 +279,7 @@ def cloud(picture: ArrayLike, mask: ArrayLike | None = None) -> float:
     >>> stripes = np.sin(np.arange(80.0))[:, None] * np.ones((80, 100))
     >>> shade = np.linspace(-1, 1, 100)
     >>> round(cloud(stripes), 2), round(cloud(stripes + shade), 1)
-    (0.01, 0.6)
+    (0.03, 0.6)
     """
     grey = _grey("picture", picture)
     ones = np.ones(grey.shape)
