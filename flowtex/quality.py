@@ -37,9 +37,8 @@ MAX_DISTANCE_PIXELS = 64  #: Greatest length and width of grain in pixels.
 NEAR_PIXELS = 4.0  #: Distance up to which grain is measured in steps of a quarter of a pixel.
 SENSE_WINDOW = 29  #: Side in pixels of the window in which the direction of strokes is determined.
 STROKE_PERCENTILE = 80  #: Percentile of the values above which a pixel belongs to a stroke.
-CLOUD_PIXELS = (
-    12.0  #: Standard deviation in pixels of the blur that leaves the clouds of a picture.
-)
+#: Standard deviation in pixels of the blur that leaves the clouds of a picture.
+CLOUD_PIXELS = 12.0
 
 
 class Alignment(NamedTuple):

@@ -90,7 +90,7 @@ class UnlistedStore(WrapperStore[Store]):
         return False
 
     async def _document(self, key: str) -> dict[str, Any]:
-        """Return a document; empty if there is none."""
+        """Return a document, or an empty one if the server has none."""
         try:
             data = await self._store.get(key, default_buffer_prototype())
         except Exception as error:

@@ -224,7 +224,7 @@ class Library:
         return name in self._openers
 
     def _fault(self, opener: Opener) -> str:
-        """Return the reason why a file could not be drawn, empty if there is none or it changed."""
+        """Return why a file could not be drawn; empty if it was not tried, or changed since."""
         if opener not in self._faults:
             return ""
         identity, reason = self._faults[opener]

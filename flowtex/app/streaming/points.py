@@ -92,7 +92,7 @@ class PointReader:
         return {}
 
     def _index(self, pane_number: int, request: Mapping[str, Any]) -> tuple[float, float] | None:
-        """Return the point (j, i) of a request, ``None`` where there is none."""
+        """Return the point (j, i) of a request, or ``None`` outside the surface."""
         pane = self._viewport.panes[pane_number]
         field = pane.field
         place = _numbers(request.get("place"), 2)

@@ -65,8 +65,8 @@ def nodal_means(
 def incidence(triangles: Indices, count: int, weights: Floats | None = None) -> Any:
     """Return a sparse matrix (M, count) with weights (M, K), or ones, at the corners of faces.
 
-    Its product with values of nodes sums them at faces, and that of its transpose those of faces
-    at nodes, several times as fast as NumPy does.
+    Multiply it by values at nodes to sum them at faces, and its transpose by values at faces to sum
+    them at nodes. This is several times as fast as ``numpy.bincount``.
     """
     if weights is None:
         weights = np.ones(triangles.size)
