@@ -11,10 +11,12 @@ import ctypes
 import gc
 import inspect
 import os
+import re
 import shutil
 import subprocess
 import sys
 from collections.abc import Iterator
+from functools import cache
 from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -50,10 +52,28 @@ if barred.WANTED:
     barred.bar()
 
 
-def pytest_ignore_collect(collection_path: Path) -> bool | None:
-    """Leave out the files that load what is barred."""
-    file = barred.WANTED and collection_path.suffix == ".py"
-    return True if file and barred.needs_them(collection_path) else None
+#: A parameter, or a mark, by which a test or a fixture asks for a browser.
+ASKS_FOR_BROWSER = re.compile(
+    r"\b(?:browser|client|client_page|page): (?:Browser|ClientPage|Page)\b|\bmark\.browser\b"
+)
+
+
+@cache
+def _asks_for_browser(path: Path) -> bool:
+    """Tell whether the text of a file asks for a browser."""
+    return ASKS_FOR_BROWSER.search(path.read_text(encoding="utf-8")) is not None
+
+
+def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool | None:
+    """Leave out files that load what is barred, and for ``-m browser`` those without a browser."""
+    if collection_path.suffix != ".py":
+        return None
+    if barred.WANTED and barred.needs_them(collection_path):
+        return True
+    only_browser = config.getoption("markexpr") == "browser"
+    if only_browser and not _asks_for_browser(collection_path):
+        return True
+    return None
 
 
 @pytest.hookimpl(wrapper=True)
@@ -93,6 +113,9 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     for item in items:
         if "browser" in getattr(item, "fixturenames", ()):
             item.add_marker("browser")
+        if item.get_closest_marker("browser") and not _asks_for_browser(item.path):
+            msg = f"{item.nodeid}: -m browser misses it; give its fixture a type, page: Page"
+            raise pytest.UsageError(msg)
         if barred.WANTED and item.get_closest_marker("threads"):
             item.add_marker(pytest.mark.skip("barred: threads"))
     items.sort(key=lambda item: ("browser" in item.keywords, item.path not in slow))

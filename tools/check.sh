@@ -36,12 +36,9 @@ tests() {
     [ $code -eq 0 ] || [ $code -eq 5 ]
 }
 
-# browser_files: the files with tests that need a browser, so that those workers collect no others.
-# uv compiles no bytecode and pytest rewrites what it collects: without this process each worker of
-# a fresh clone would do so, in 14 seconds.
-browser_files() {
-    "$bin/pytest" --collect-only -qq -m browser 2>/dev/null | sed -n 's/^\(tests.*\.py\): .*/\1/p'
-}
+# compiled: compile the tests and what they load, where that was never done. uv compiles no bytecode
+# and pytest rewrites what it collects, so each worker would do so, in 14 seconds.
+compiled() { [ -d "$here/../tests/__pycache__" ] || "$bin/pytest" --collect-only -qq >/dev/null 2>&1; }
 
 # ended PID NAME LOG: wait for a background job, and show its output.
 ended() {
@@ -63,16 +60,12 @@ aside="$types $client"
 
 fast="not browser and not slow"
 case $which in
-all | fast) with_browser=$(browser_files) ;;
-esac
-case " $* " in
-*" tests"*) with_browser= ;; # the arguments name files
+all | fast) compiled ;;
 esac
 case $which in
 all)
     # Playwright's event loop excludes that of other tests, so these run in processes of their own.
-    # shellcheck disable=SC2086 # a list of files
-    (tests -n "$(workers "$bin")" -m browser "$@" $with_browser) >"$logs/browser" 2>&1 &
+    (tests -n "$(workers "$bin")" -m browser "$@") >"$logs/browser" 2>&1 &
     browser=$!
     aside="$aside $browser"
     # One process more than cores, as many of these tests wait for servers and files.
