@@ -144,10 +144,13 @@ export function meanColour(colour: number[], settings: Settings, shading: Shadin
   values.forEach((value) => {
     const tone = 2 / (1 + Math.exp(-slope * contrast * value)) - 1;
     const shown = clamp(base + range * strength * tone, 0, 1);
-    const room = shown < base ? shown / base : (1 - shown) / Math.max(1 - base, 1e-6);
-    const roots = times([shown, a * room, b * room], shading.fromLab);
+    const roots = times([shown, a, b], shading.fromLab);
     const linear = times(roots.map((x) => x ** 3), shading.fromCones);
-    linear.forEach((x, k) => (mean[k] += (255 * fromLinear(x)) / values.length));
+    const grey = shown ** 3;
+    // Where sRGB has no such colour, grey is mixed in until it has.
+    const rooms = linear.map((x) => Math.abs(Number(x >= grey) - grey) / Math.max(Math.abs(x - grey), 1e-6));
+    const room = Math.min(...rooms, 1);
+    linear.forEach((x, k) => (mean[k] += (255 * fromLinear(grey + room * (x - grey))) / values.length));
   });
   return mean;
 }

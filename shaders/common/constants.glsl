@@ -87,6 +87,7 @@ const float FLOWTEX_BASE_LIGHT = 0.80;
 const float FLOWTEX_TONE_RANGE = 0.34;
 const float FLOWTEX_TONE_SLOPE = 1.1;
 const float FLOWTEX_LEAST_LIGHTNESS = 1e-6;
+const float FLOWTEX_LEAST_CHROMA = 1e-6; // difference of a linear colour to its grey
 // Lights: dark sides stay bright enough to read the texture there.
 const float FLOWTEX_AMBIENT_LIGHT = 0.15;
 const float FLOWTEX_DIFFUSE_LIGHT = 1.0;

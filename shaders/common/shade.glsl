@@ -3,8 +3,8 @@
 // The lightness of every colour is first drawn towards the middle, by one straight line for all,
 // so that there is room for the texture below and above it; then the texture goes up and down from
 // there by the same amount everywhere. The mean lightness over many grains is thus on that line,
-// and a colour map that grows lighter still does. Hue stays; chroma shrinks towards black and white
-// as the room for it does.
+// and a colour map that grows lighter still does. Hue and chroma stay; where sRGB has no such colour,
+// the grey of the same lightness is mixed in until it has.
 
 vec3 flowtexToOklab(vec3 colour)
 {
@@ -18,7 +18,11 @@ vec3 flowtexToOklab(vec3 colour)
 vec3 flowtexFromOklab(vec3 lab)
 {
   vec3 lms = FLOWTEX_FROM_LAB * lab;
-  vec3 linear = clamp(FLOWTEX_FROM_CONES * (lms * lms * lms), 0.0, 1.0);
+  vec3 linear = FLOWTEX_FROM_CONES * (lms * lms * lms);
+  vec3 grey = vec3(lab.x * lab.x * lab.x);
+  vec3 chroma = linear - grey;
+  vec3 room = abs(step(0.0, chroma) - grey) / max(abs(chroma), FLOWTEX_LEAST_CHROMA);
+  linear = clamp(grey + min(min(min(room.r, room.g), room.b), 1.0) * chroma, 0.0, 1.0);
   vec3 curved = FLOWTEX_SRGB_SCALE * pow(linear, vec3(1.0 / FLOWTEX_SRGB_POWER)) - FLOWTEX_SRGB_OFFSET;
   return mix(linear * FLOWTEX_SRGB_SLOPE, curved, step(FLOWTEX_SRGB_LINEAR_KNEE, linear));
 }
@@ -34,9 +38,7 @@ vec3 flowtexShade(vec3 colour, float value)
   vec3 lab = flowtexToOklab(colour);
   float base = mix(lab.x, mix(FLOWTEX_BASE_DARK, FLOWTEX_BASE_LIGHT, lab.x), u_strength);
   float light = clamp(base + FLOWTEX_TONE_RANGE * u_strength * flowtexTone(value), 0.0, 1.0);
-  float room = light < base ? light / max(base, FLOWTEX_LEAST_LIGHTNESS)
-    : (1.0 - light) / max(1.0 - base, FLOWTEX_LEAST_LIGHTNESS);
-  return flowtexFromOklab(vec3(light, lab.yz * room));
+  return flowtexFromOklab(vec3(light, lab.yz));
 }
 
 // A colour for a level of detail, for teaching: one hue for each doubling, six in a round.

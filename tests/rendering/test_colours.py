@@ -21,6 +21,19 @@ def lightness(colours: Floats) -> Floats:
     return np.asarray(np.where(y > 0.008856, 116 * np.cbrt(y) - 16, 903.3 * y))
 
 
+def chroma(colours: Floats) -> Floats:
+    """CIE C*ab of sRGB colours, by the standard's own formula."""
+    linear = np.where(colours <= 0.04045, colours / 12.92, ((colours + 0.055) / 1.055) ** 2.4)
+    to_xyz = np.array(
+        [[0.4124, 0.3576, 0.1805], [0.2126, 0.7152, 0.0722], [0.0193, 0.1192, 0.9505]]
+    )
+    xyz = linear @ to_xyz.T / to_xyz.sum(axis=1)
+    roots = np.where(xyz > 0.008856, np.cbrt(xyz), 7.787 * xyz + 16 / 116)
+    a = 500 * (roots[..., 0] - roots[..., 1])
+    b = 200 * (roots[..., 1] - roots[..., 2])
+    return np.asarray(np.hypot(a, b))
+
+
 @pytest.fixture(scope="module")
 def values() -> Floats:
     return np.random.default_rng(1).standard_normal(4000)
@@ -42,6 +55,20 @@ def test_the_texture_shows_on_every_colour(name: str, values: Floats) -> None:
     spread = [lightness(shade(colour, values, Settings())).std() for colour in colours]
     assert min(spread) > 8
     assert max(spread) / min(spread) < 1.6
+
+
+@pytest.mark.parametrize("name", ["viridis", "cividis", "RdBu_r", "turbo"])
+def test_colours_keep_their_chroma_under_the_texture(name: str, values: Floats) -> None:
+    colours = matplotlib.colormaps[name](np.linspace(0, 1, 33))[:, :3]
+    kept = [chroma(shade(c, values, Settings())).mean() / chroma(c) for c in colours]
+    assert min(kept) > 0.78
+    assert np.mean(kept) > 0.88
+
+
+def test_yellow_is_not_drawn_as_white(values: Floats) -> None:
+    yellow = np.array(matplotlib.colormaps["viridis"](0.97)[:3])
+    drawn = shade(yellow, values, Settings())
+    assert (drawn.min(axis=-1) > 0.9).mean() < 0.02
 
 
 def test_without_strength_or_contrast_colours_are_what_they_were(values: Floats) -> None:

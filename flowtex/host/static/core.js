@@ -110,14 +110,15 @@ SRGB.offset}var times=(v2,m)=>[0,1,2].map(k=>v2[0]*m[k]+v2[1]*m[3+k]+v2[2]*m[6+k
 let{values}=shading,[[dark,light],[range,slope]]=[shading.base,shading.tone],[strength,contrast]=[Number(settings.strength),
 Number(settings.contrast)],cones=times(colour.map(c=>toLinear(c/255)),shading.toCones).map(Math.cbrt),[lightness,a,b]=times(
 cones,shading.toLab),base=lightness+strength*(dark+(light-dark)*lightness-lightness),mean=[0,0,0];return values.forEach(
-value=>{let tone=2/(1+Math.exp(-slope*contrast*value))-1,shown=clamp(base+range*strength*tone,0,1),room=shown<base?shown/
-base:(1-shown)/Math.max(1-base,1e-6),roots=times([shown,a*room,b*room],shading.fromLab);times(roots.map(x=>x**3),shading.
-fromCones).forEach((x,k)=>mean[k]+=255*fromLinear(x)/values.length)}),mean}function runsOf(map){let runs=[];for(let n=0;n<
-map.length/4;n+=1)n>0&&[0,1,2].every(k=>map[4*n+k]===map[4*n-4+k])?runs[runs.length-1][1]=n+1:runs.push([n,n+1]);return runs}
-function rampOf(map,header,settings,stops){let count2=map.length/4,shown=n=>{let colour=[...map.slice(4*n,4*n+3)];return`\
-rgb(${(header.image?colour:meanColour(colour,settings,header.constants.shading)).map(Math.round).join(" ")})`},runs=runsOf(
-map);return`linear-gradient(90deg, ${(runs.length<=MOST_STEPS?runs.map(([from,to])=>`${shown(from)} ${100*from/count2}% ${100*
-to/count2}%`):Array.from({length:stops},(_,n)=>shown(Math.round(n/(stops-1)*(count2-1))))).join(", ")})`}var NORTH=[0,0,1],STEEPEST=Math.sin(89*Math.PI/180),LEAST_COSINE=.2,LEAST_PARALLEL=.8,tangent=degrees=>Math.tan(degrees*
+value=>{let tone=2/(1+Math.exp(-slope*contrast*value))-1,shown=clamp(base+range*strength*tone,0,1),roots=times([shown,a,
+b],shading.fromLab),linear=times(roots.map(x=>x**3),shading.fromCones),grey=shown**3,rooms=linear.map(x=>Math.abs(+(x>=grey)-
+grey)/Math.max(Math.abs(x-grey),1e-6)),room=Math.min(...rooms,1);linear.forEach((x,k)=>mean[k]+=255*fromLinear(grey+room*
+(x-grey))/values.length)}),mean}function runsOf(map){let runs=[];for(let n=0;n<map.length/4;n+=1)n>0&&[0,1,2].every(k=>map[4*
+n+k]===map[4*n-4+k])?runs[runs.length-1][1]=n+1:runs.push([n,n+1]);return runs}function rampOf(map,header,settings,stops){
+let count2=map.length/4,shown=n=>{let colour=[...map.slice(4*n,4*n+3)];return`rgb(${(header.image?colour:meanColour(colour,
+settings,header.constants.shading)).map(Math.round).join(" ")})`},runs=runsOf(map);return`linear-gradient(90deg, ${(runs.
+length<=MOST_STEPS?runs.map(([from,to])=>`${shown(from)} ${100*from/count2}% ${100*to/count2}%`):Array.from({length:stops},
+(_,n)=>shown(Math.round(n/(stops-1)*(count2-1))))).join(", ")})`}var NORTH=[0,0,1],STEEPEST=Math.sin(89*Math.PI/180),LEAST_COSINE=.2,LEAST_PARALLEL=.8,tangent=degrees=>Math.tan(degrees*
 Math.PI/360),Camera=class{flat;limits;aspect;state;start;pick=null;globe;homeHeight;nearest;constructor(state,limits,flat,aspect=1,globe=0){
 this.state=copyOf(state),this.start=copyOf(state),this.limits=limits,this.flat=flat,this.globe=globe,this.aspect=aspect,
 this.homeHeight=this.height,this.nearest=this.distance/limits.closest}get height(){let{parallel,parallel_scale:half,view_angle:angle}=this.

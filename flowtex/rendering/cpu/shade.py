@@ -19,9 +19,7 @@ def shade(colour: ArrayLike, value: Floats, settings: Settings) -> Floats:
         const.BASE_DARK + (const.BASE_LIGHT - const.BASE_DARK) * lightness - lightness
     )
     light = np.clip(base + const.TONE_RANGE * strength * tone(value, settings.contrast), 0.0, 1.0)
-    up = (1.0 - light) / np.maximum(1.0 - base, const.LEAST_LIGHTNESS)
-    room = np.where(light < base, light / np.maximum(base, const.LEAST_LIGHTNESS), up)
-    return _from_oklab(np.concatenate([light[..., None], lab[..., 1:] * room[..., None]], axis=-1))
+    return _from_oklab(np.concatenate([light[..., None], lab[..., 1:]], axis=-1))
 
 
 def mean_colours(table: Bytes, settings: Settings) -> Bytes:
@@ -62,6 +60,14 @@ def _to_oklab(colour: Floats) -> Floats:
 
 def _from_oklab(lab: Floats) -> Floats:
     roots = lab @ const.FROM_LAB
-    linear = np.clip(roots**3 @ const.FROM_CONES, 0.0, 1.0)
+    linear = _in_range(roots**3 @ const.FROM_CONES, lab[..., :1] ** 3)
     curved = const.SRGB_SCALE * np.power(linear, 1.0 / const.SRGB_POWER) - const.SRGB_OFFSET
     return np.asarray(np.where(linear < const.SRGB_LINEAR_KNEE, linear * const.SRGB_SLOPE, curved))
+
+
+def _in_range(linear: Floats, grey: Floats) -> Floats:
+    """Mix linear colours (..., 3) with greys (..., 1) until all are from 0 to 1."""
+    chroma = linear - grey
+    room = np.abs((chroma >= 0.0) - grey) / np.maximum(np.abs(chroma), const.LEAST_CHROMA)
+    share = np.minimum(room.min(axis=-1, keepdims=True), 1.0)
+    return np.asarray(np.clip(grey + share * chroma, 0.0, 1.0))
