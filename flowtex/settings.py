@@ -33,7 +33,11 @@ NEEDS: dict[str, tuple[Condition, ...]] = {
     "kernel": _NEEDS_DENSE,
     "two_sided": _NEEDS_DENSE,
     "tiles": (("noise", "==", "image"),),
-    "resolution": (("fixed_grain", "==", True), ("lod", "==", False)),
+    "resolution": (
+        ("noise", "==", "texture"),
+        ("fixed_grain", "==", True),
+        ("lod", "==", False),
+    ),
     "arrows": (("noise", "==", "procedural"),),
     "arrow_length": (("arrows", "!=", 0.0),),
     "arrow_color": (("arrows", "!=", 0.0),),
@@ -262,14 +266,16 @@ class Settings:
         default=True,
     )
     noise: str = _row(
-        "Noise that is even in space, or an image instead.",
+        "Noise that is even in space, the mipmapped noise texture of the paper, or an image in "
+        "its place.",
         default="procedural",
         affects="shader",
-        choices=("procedural", "image"),
+        choices=("procedural", "texture", "image"),
     )
     tiles: int = _row("Repeats of an image along each side.", default=1, span=(1, 64))
     resolution: int = _row(
-        "Number of grains along the surface where their size is fixed.",
+        "Number of grains along the surface where their size is fixed, or of texels of a noise "
+        "texture.",
         default=1024,
         span=(16, 8192),
     )

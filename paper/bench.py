@@ -3,30 +3,32 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, TypeVar
 
 import numpy as np
 
 from flowtex.field import FlowField
+from flowtex.rendering.cpu.noise_texture import NoiseImages
 from flowtex.rendering.cpu.texture import LookupMaker
 from flowtex.settings import Settings
+from flowtex.textures.noise_textures import NoiseTextures
 from flowtex.textures.texture_set import TextureSet
 from flowtex.trace.store import SliceStore
 from paper import data_sets
-from paper.noise_texture import NoiseImages, NoiseTextures
 
 T = TypeVar("T")
 
 #: The paper's own method: its noise texture and step texture, ten even contributions, backward.
-#: ``noise`` and ``noise_correction`` select a :mod:`paper.noise_texture`; they are no settings.
+#: ``noise`` and ``noise_correction`` select a :class:`NoiseTextures`; the latter is no setting.
 PAPER: dict[str, Any] = {
     "noise": "texture",
     "samples": 10,
     "spacing": 1.0,
     "kernel": "box",
     "two_sided": False,
+    "grain": 1.0,
 }
 #: What flowtex does when nothing is set.
 OURS: dict[str, Any] = {}
@@ -120,8 +122,7 @@ class Bench:
         resolution, corrected = settings.resolution, values.get("noise_correction", True)
 
         def make() -> TextureSet:
-            noise = NoiseTextures.of(store, resolution, settings.seed, corrected=corrected)
-            return replace(plain, image=noise)
+            return plain.with_noise(resolution, settings.seed, corrected=corrected)
 
         return self.once((*key, resolution, corrected, settings.seed), make)
 

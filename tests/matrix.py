@@ -71,6 +71,7 @@ IMAGE[..., :2] = np.moveaxis(np.indices((30, 50)), 0, -1) / 50
 IMAGE[5:25, 10:40, 3] = 1.0
 
 LAID: dict[str, Any] = {"noise": "image", "strength": 1.0}
+TEXTURE: dict[str, Any] = {"noise": "texture", "resolution": 256}
 MOTION = {"motion": "speed"}
 #: A seed without a bright grain in the corner, where the flow rests and rounding decides.
 STREAKLETS: dict[str, Any] = {"texture": "streaklets", "seed": 1}
@@ -181,6 +182,13 @@ VIEWS: dict[str, View] = {
     "uncertain, between two steps": View(
         lambda: uncertain(swinging()), MIDDLE, {"lines": "pathlines"}, time=0.55
     ),
+    "noise texture": View(settings=TEXTURE),
+    "noise texture, near": View(camera=straight(32), settings=TEXTURE),
+    "noise texture, tilted": View(camera=TILTED, settings=TEXTURE | {"samples": 49}),
+    "noise texture, curved": View(torus, ASIDE, TEXTURE | {"grain": 1.0}),
+    "noise texture, no lod": View(settings=TEXTURE | {"lod": False, "resolution": 64}),
+    "noise texture in time": View(swinging, MIDDLE, TEXTURE | {"fade": 0.5}, time=0.55),
+    "uncertain, noise texture": View(uncertain_gyre, settings=TEXTURE),
     "uncertain, image": View(uncertain_gyre, settings=LAID),
     "fading": View(settings={"fade": 0.9}),
     "image": View(settings=LAID | {"tiles": 3}),

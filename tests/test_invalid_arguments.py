@@ -345,7 +345,8 @@ TABLE_OF_CALLS: dict[Callable[..., object], list[tuple[Any, str]]] = {
         ({"critical_points": 7}, "critical_points is 7; expected 0"),
     ],
     partial(Scene.of, triangles()): [
-        ({"image": np.ones((4, 4, 3))}, "noise is 'image' ... triangles; expected noise=")
+        ({"image": np.ones((4, 4, 3))}, "noise is 'image' ... triangles; expected noise="),
+        ({"noise": "texture"}, "noise is 'texture' ... triangles; expected noise="),
     ],
     partial(Scene.of, torus()): [
         ({"nullclines": True}, "nullclines is True; expected False: the surface")
@@ -405,6 +406,7 @@ TABLE_OF_DRAWING: dict[Callable[..., object], list[tuple[Any, str]]] = {
     movie: [
         ({"motion": "off"}, "motion is 'off'; expected 'speed' or 'uniform'"),
         ({"image": np.ones((2, 2))}, "noise is 'image', which cannot move"),
+        ({"noise": "texture"}, "noise is 'texture', which cannot move"),
         ({"seconds": 0.0}, "seconds is 0.0; expected a number from 0.1 to 600"),
         ({"fps": 500.0}, "fps is 500.0; expected more than 0 and at most 120"),
         ({"fps": 100.0, "seconds": 600.0}, "60,000 frames; expected at most"),

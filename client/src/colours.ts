@@ -169,10 +169,11 @@ function runsOf(map: Data): [number, number][] {
 /** A ramp of the mean colours that the picture has with a map, (N, 4), as a background. */
 export function rampOf(map: Data, header: Header, settings: Settings, stops: number): string {
   const count = map.length / 4;
+  // An image on the surface has colours of its own.
+  const hasOwn = Boolean(header.image) && !header.image?.deviations;
   const shown = (n: number) => {
     const colour = [...map.slice(4 * n, 4 * n + 3)];
-    // An image on the surface has colours of its own.
-    return `rgb(${(header.image ? colour : meanColour(colour, settings, header.constants.shading)).map(Math.round).join(" ")})`;
+    return `rgb(${(hasOwn ? colour : meanColour(colour, settings, header.constants.shading)).map(Math.round).join(" ")})`;
   };
   // Few colours have borders.
   const runs = runsOf(map);

@@ -219,7 +219,8 @@ export function grainAt(at: PathPlace, settings: Settings, camera: Camera, rows:
       return (along[n + 1] - along[n]) * image.stepSize[axis];
     });
     const texel = Math.sqrt(length(normal) / (across * up));
-    return settings.lod ? Math.max(pixel / Math.sqrt(facing), texel) : texel;
+    const grain = image.deviations ? pixel * Number(settings.grain) : pixel;
+    return settings.lod ? Math.max(grain / Math.sqrt(facing), texel) : texel;
   }
   const texel = geometry.extent / Number(settings.resolution);
   if (!settings.lod) return texel;

@@ -60,10 +60,14 @@ export interface Row {
   choices: string[];
 }
 
-/** An image in place of the noise. */
+/** An image in place of the noise, or noise that is a texture. */
 export interface ImageTextures {
   /** Columns and rows of the image, and of the step texture. */
   size: [number, number];
+  /** Of noise: its deviation at each mip level and half-way to the next; null for an image. */
+  deviations: number[] | null;
+  /** Whether the texels are repeated along (v, u), which an image always is. */
+  repeated: [boolean, boolean];
   stepSize: [number, number];
   repeat: [boolean, boolean];
   /** Coordinates of columns and rows of nodes in it. */

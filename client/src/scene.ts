@@ -499,7 +499,7 @@ export class Scene {
     this.dropSlices(before, after);
     this.bind("u_slices", this.slices(before));
     this.bind("u_slicesNext", after === before ? null : this.slices(after));
-    this.bind("u_image", image && this.image("image", [true, true]));
+    this.bind("u_image", image && this.image("image", image.repeated));
     this.bind("u_stepImage", image && this.image("step", image.repeat));
     const colours = texelsOf(this.parts.get("cmap")?.data ?? new Uint8Array(4), scalars);
     this.bind("u_cmap", this.table("cmap", this.key(["cmap"], scalars.beyond), gl.RGBA32F, colours.length / 4, () => colours));

@@ -70,7 +70,7 @@ export function uniforms(header: Header, settings: Settings, view: ViewState): R
     u_bySpeed: settings.arrow_length === "speed",
     u_arrowSides: slices.sides,
     u_pieces: constants.arrows.pieces,
-    ...(header.image ? imageUniforms(header.image, s.tiles, view.density) : {}),
+    ...(header.image ? imageUniforms(header.image, s, view.density) : {}),
   };
 }
 
@@ -186,13 +186,17 @@ function turnUniforms(header: Header, view: ViewState, finest: number): Record<s
   };
 }
 
-/** Sizes of an image; a greater density of pixels chooses a finer level. */
-function imageUniforms({ size, stepSize, repeat }: ImageTextures, tiles: number, density: number) {
+/** Sizes of an image, or of noise that is a texture; a greater density of pixels chooses a finer level. */
+function imageUniforms({ size, stepSize, repeat, deviations }: ImageTextures, s: Numbers, density: number) {
+  const tiles = deviations ? 1 : s.tiles;
+  // A texel of the level of noise that is drawn is a grain.
+  const texels = density * (deviations ? s.grain : tiles);
   return {
     u_stepSize: stepSize.map((n) => n * density),
-    u_imageSize: size.map((n) => n * density * tiles),
+    u_imageSize: size.map((n) => n * texels),
     u_imageRound: [Number(repeat[1]), Number(repeat[0])],
     u_tiles: tiles,
+    ...(deviations ? { u_noiseDeviations: deviations } : {}),
   };
 }
 

@@ -77,5 +77,7 @@ test("a map is a part of the table of all of them, and an image has colours of i
   };
   assert.equal(rampFor({}), "linear-gradient(90deg, rgb(0 0 0), rgb(128 128 128), rgb(255 255 255))");
   const [middle] = [meanColour([128, 128, 128], settings, shading).map(Math.round)];
-  assert.ok(rampFor(null).includes(`, rgb(${middle.join(" ")}), `));
+  for (const noise of [null, { deviations: [1] }]) {
+    assert.ok(rampFor(noise).includes(`, rgb(${middle.join(" ")}), `));
+  }
 });

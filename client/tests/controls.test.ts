@@ -115,6 +115,7 @@ test("a setting is offered where it changes the picture", () => {
   const of = (image: object | null, steps = 1, lines = "") =>
     ({ variant: [], image, slices: { sides: 2, steps }, settings: { lines } }) as unknown as Header;
   const [whole, image] = [of(null), of({})];
+  const noise = of({ deviations: [1] });
   const cases: [name: string, header: Header, rebuild: boolean, useful: boolean][] = [
     ["grain", whole, false, true],
     ["fixed_grain", image, true, false],
@@ -122,6 +123,13 @@ test("a setting is offered where it changes the picture", () => {
     ["seed", whole, false, true],
     ["seed", image, true, false],
     ["resolution", image, true, false],
+    ["grain", image, true, false],
+    ["grain", noise, false, true],
+    ["fixed_grain", noise, true, false],
+    ["seed", noise, true, true],
+    ["seed", noise, false, false],
+    ["resolution", noise, true, true],
+    ["tiles", noise, true, false],
     ["tiles", whole, true, false],
     ["tiles", image, false, true],
     ["lines", of(null, 3), true, true],

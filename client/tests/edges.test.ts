@@ -187,4 +187,6 @@ test("a grain is as long as a pixel or a texel of the image's steps", () => {
   assertClose(grain({ lod: false }), 0.01);
   assertClose(grain({ fixed_grain: true, resolution: 10 }), 0.1);
   assertClose([grain({}, { image }), grain({ lod: false }, { image })], [0.05, 0.05]);
+  const noise = { ...image, stepSize: [200, 200], deviations: [1] };
+  assertClose([grain({ grain: 3 }, { image: noise }), grain({ lod: false }, { image: noise })], [0.03, 0.005]);
 });

@@ -17,6 +17,7 @@ from flowtex.rendering.arrow_seeds import seed_limits
 from flowtex.rendering.shaders import KERNELS, MEAN_VALUES, const
 from flowtex.settings import Settings
 from flowtex.textures.images import ImageTextures
+from flowtex.textures.noise_textures import NoiseTextures
 from flowtex.textures.texture_set import TextureSet
 
 #: Uniforms by name: bool, int, float, tuples of float, or lists for arrays.
@@ -71,6 +72,7 @@ def variants(
         "FLOWTEX_MOVING": moving,
         "FLOWTEX_CELLS": near,
         "FLOWTEX_IMAGE": textures.image is not None,
+        "FLOWTEX_PAINTED": textures.image is not None and not textures.image.is_noise,
         "FLOWTEX_PLANAR": textures.geometry.planar,
         "FLOWTEX_SIGNFREE": flow.sign_free,
         "FLOWTEX_TRIANGLES": flow.triangles is not None,
@@ -267,14 +269,22 @@ def _noise_origin(focus: Floats, finest: float, anchor: Floats) -> Values:
 
 
 def _image(image: ImageTextures, settings: Settings, density: float) -> Values:
-    """Return the uniforms of an image that is drawn in place of noise, by name."""
-    height = image.step.shape[0] * density
-    width = image.step.shape[1] * density
-    rows = image.texels.shape[0] * density * settings.tiles
-    columns = image.texels.shape[1] * density * settings.tiles
-    return {
-        "u_stepSize": (float(width), float(height)),
-        "u_imageSize": (float(columns), float(rows)),
+    """Return the uniforms of an image, or of noise that is a texture, by name."""
+    height, width = image.step.shape
+    rows, columns = image.texels.shape[:2]
+    if isinstance(image, NoiseTextures):
+        # A texel of the level that is drawn is a grain.
+        texels = density * settings.grain
+        tiles = 1
+    else:
+        texels = density * settings.tiles
+        tiles = settings.tiles
+    values: dict[str, Any] = {
+        "u_stepSize": (float(width * density), float(height * density)),
+        "u_imageSize": (float(columns * texels), float(rows * texels)),
         "u_imageRound": (float(image.repeat[1]), float(image.repeat[0])),
-        "u_tiles": float(settings.tiles),
+        "u_tiles": float(tiles),
     }
+    if isinstance(image, NoiseTextures):
+        values["u_noiseDeviations"] = image.deviations
+    return values

@@ -48,6 +48,9 @@ from flowtex.trace.store import SliceStore, chosen_lines, shared_store
 #: The kind of a change: what a setting affects, or the appearance.
 Change = Affects | Literal["appearance"]
 
+#: Settings that change the texture of ``noise="texture"``, and otherwise only uniforms.
+IN_NOISE_TEXTURE = ("seed", "resolution")
+
 NO_IMAGE = "noise is 'image', but no image is given; pass image=, or call set_image(image)"
 
 
@@ -299,23 +302,29 @@ class Scene:
         textures = self._textures
         version = self._version
         if textures is None:
-            if self.settings.noise == "image":
-                image = self.image
-            else:
-                image = None
             store = self.store
             pyramid = self.pyramid
+            image = None
+            noise_size: tuple[int, int] | None = None
             # Textures keep their store alive, so its id is unique while they live.
-            image_digest = None
-            if image is not None:
-                image_digest = digest(image)
+            key: tuple[object, ...] = (id(store),)
+            if self.settings.noise == "image":
+                image = self.image
+                assert image is not None
+                key += (digest(image),)
+            elif self.settings.noise == "texture":
+                noise_size = (self.settings.resolution, self.settings.seed)
+                key += noise_size
 
             def make() -> TextureSet:
                 if pyramid:
                     return pyramid.root_textures(store)
-                return TextureSet.build(store, image)
+                made = TextureSet.build(store, image)
+                if noise_size is not None:
+                    made = made.with_noise(*noise_size)
+                return made
 
-            textures = _textures.get((id(store), image_digest), make)
+            textures = _textures.get(key, make)
             if version == self._version:  # no other thread has changed a setting meanwhile
                 self._textures = textures
         return textures
@@ -606,6 +615,8 @@ class Scene:
                 raise
             self._noise = value
         affects = TABLE[name].affects
+        if name in IN_NOISE_TEXTURE and self.settings.noise == "texture":
+            affects = "textures"
         if affects == "trace":
             self._store = self._pyramid = None
             self._sliced = None

@@ -195,6 +195,16 @@ class ImageTextures:
         return cls(texels, step, along_i, along_j, field.periodic)
 
     @property
+    def repeated(self) -> tuple[bool, bool]:
+        """Whether the texels are repeated along (v, u): an image always is."""
+        return True, True
+
+    @property
+    def is_noise(self) -> bool:
+        """Whether the texels are noise instead of colours."""
+        return False
+
+    @property
     def coordinate(self) -> Floats32:
         """Image coordinates of the nodes, (J, I, 2)."""
         return np.stack(np.meshgrid(self.along_i, self.along_j), axis=-1).astype(np.float32)

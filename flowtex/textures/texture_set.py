@@ -45,6 +45,7 @@ from flowtex.textures.crossing import shown_speed
 from flowtex.textures.edge_paths import EdgePaths
 from flowtex.textures.geometry import SurfaceGeometry
 from flowtex.textures.images import ImageTextures
+from flowtex.textures.noise_textures import NoiseTextures
 from flowtex.textures.triangle_geometry import TriangleGeometry
 from flowtex.trace.slices import TraceSlices, typical_speed
 from flowtex.trace.store import SliceStore
@@ -59,7 +60,10 @@ AGREED = 0.99  #: Length of the mean velocity over the mean length where nodes a
 
 @dataclass(frozen=True, eq=False)
 class TextureSet:
-    """The data of a flow for a renderer; slopes are in image coordinates with an image."""
+    """The data of a flow for a renderer.
+
+    Slopes are in image coordinates with an image, or with noise that is a texture.
+    """
 
     geometry: SurfaceGeometry | TriangleGeometry
     store: SliceStore
@@ -103,6 +107,27 @@ class TextureSet:
             return textures
         check_noise(field, "image")
         return replace(textures, image=ImageTextures.build(store, image))
+
+    def with_noise(self, resolution: int, seed: int, *, corrected: bool = True) -> TextureSet:
+        """Return the same with a mipmapped noise texture over the parameters of the surface.
+
+        Parameters
+        ----------
+        resolution
+            Number of texels along the longer side of the surface.
+        seed
+            Seed of the noise.
+        corrected
+            Whether the noise is even on the surface; otherwise it is even over the cells.
+
+        Raises
+        ------
+        SettingsError
+            When the surface consists of triangles.
+        """
+        check_noise(self.geometry.field, "texture")
+        noise = NoiseTextures.of(self.store, resolution, seed, corrected=corrected)
+        return replace(self, image=noise)
 
     def with_image(self, image: Floats32) -> TextureSet:
         """Return the same with another image."""

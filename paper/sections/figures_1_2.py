@@ -10,15 +10,16 @@ from flowtex._util.array_types import Floats, Indices
 from flowtex.field.interpolation import bracket
 from flowtex.field.locate import surface_point
 from flowtex.rendering.cpu.fragments import Fragments, slice_level
+from flowtex.rendering.cpu.noise_texture import NoiseImages, NoiseLookup
 from flowtex.rendering.cpu.render import slices_at, view_state
 from flowtex.rendering.cpu.texture import Summing
 from flowtex.rendering.uniforms import ViewState, uniforms
 from flowtex.scene.probe import Recorder, camera_facing, cover_place
+from flowtex.textures.noise_textures import NoiseTextures
 from flowtex.trace.trace import trace
 from paper.bench import PAPER, Bench
 from paper.blocks import block_means
 from paper.findings import Claim, Finding, Plot, Section, Table
-from paper.noise_texture import NoiseImages, NoiseLookup, NoiseTextures
 from paper.plots import COLOURS, GROUND, INK, RULE, SOFT, plot_axes
 
 #: Destination time of figure 1, slices that are drawn, and the middle (i, j) of a vortex.
@@ -148,7 +149,7 @@ def _looked(bench: Bench) -> tuple[_Looked, Floats]:
     first, shares = bracket(knots, lags, side="left")
     coordinates = (lookup.start + np.concatenate(recorder.displacement)[:, :2])[order]
     mip = round(float(lookup.level[0]))
-    level = np.asarray(block_means(noise.texels, 2**mip), float)
+    level = np.asarray(block_means(noise.texels[..., 0], 2**mip), float)
     unit = float(slices.layer(fragments.place, 0, slice_mip)[0, 3]) * textures.unit / textures.pace
     return _Looked(
         level=float(lookup.level[0]),

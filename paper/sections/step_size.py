@@ -10,11 +10,12 @@ import numpy as np
 from flowtex import quality
 from flowtex._util.array_types import Floats
 from flowtex.rendering.cpu.fragments import Fragments
+from flowtex.rendering.cpu.noise_texture import NoiseImages, NoiseLookup
 from flowtex.rendering.cpu.texture import LookupMaker
+from flowtex.textures.noise_textures import NoiseTextures
 from paper import measures
 from paper.bench import PAPER, Bench
 from paper.findings import Claim, Finding, Panel, Plate, Section, Table
-from paper.noise_texture import NoiseImages, NoiseLookup, NoiseTextures
 from paper.plots import Line, line_plot
 from paper.views import View, grey, view_of
 

@@ -6,12 +6,12 @@ import time
 from typing import Any
 
 from flowtex.field import FlowField
+from flowtex.textures.noise_textures import NoiseTextures
 from flowtex.textures.texture_set import TextureSet
 from flowtex.trace.store import SliceStore
 from flowtex.trace.trace import trace
 from paper.bench import PAPER, Bench
 from paper.findings import Block, Claim, Finding, Section, Table, Text
-from paper.noise_texture import NoiseTextures
 
 #: Seconds of preprocessing, and of texture creation and loading, as the paper has them.
 PUBLISHED = {"post": (2.312, 0.08), "shuttle": (3.172, 0.077), "vortex": (8.875, 0.24)}

@@ -1,7 +1,8 @@
 // The numbers of the method, which flowtex/rendering/shaders.py reads.
 
-// Length of the array of lags that a renderer sets.
+// Lengths of the arrays that a renderer sets.
 const int FLOWTEX_MOST_LAGS = 32;
+const int FLOWTEX_HALF_LEVELS = 32;
 
 // The sum along a path.
 const int FLOWTEX_KERNEL_HANN = 0;
@@ -57,6 +58,7 @@ const float FLOWTEX_LEVEL_STRENGTH = 0.5; // of an image over the colours of the
 // Noise that is even in space.
 const float FLOWTEX_SQRT_HALF = 0.7071067811865476;
 const float FLOWTEX_LAST_OCTAVE = 58.99;    // and between two, as the next ones
+const float FLOWTEX_LAST_HALF_LEVEL = 30.99;
 const float FLOWTEX_LEAST_RATE = 0.25;      // turns in a base period of a grain in motion
 const float FLOWTEX_LEAST_TRAVEL = 1e-30;
 const float FLOWTEX_MANY_PHASES = 64.0;     // rounds of phases of every other rate

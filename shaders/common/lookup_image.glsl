@@ -18,18 +18,6 @@ void flowtexGather(vec3 displacement, float weight)
   flowtexWeights += weight;
 }
 
-// Texels of a texture that a pixel covers.
-float flowtexCovered(vec2 dx, vec2 dy, vec2 size)
-{
-  vec2 footprint = flowtexFootprint(vec3(dx * size, 0.0), vec3(dy * size, 0.0));
-  return sqrt(footprint.x * footprint.y);
-}
-
-float flowtexMip(float texels)
-{
-  return u_lod ? max(log2(max(texels, FLOWTEX_LEAST_TEXELS)), 0.0) : 0.0;
-}
-
 // Colour with the image laid over it.
 vec3 flowtexPaint(vec3 colour)
 {

@@ -109,7 +109,7 @@ struct FlowtexSums
 
 void flowtexAdd(inout FlowtexSums sums, vec3 displacement, float length_, float weight, float before)
 {
-#ifdef FLOWTEX_IMAGE
+#ifdef FLOWTEX_PAINTED
   flowtexGather(displacement, weight);
 #else
   sums.noise += weight * flowtexLookup(displacement, length_);
@@ -219,7 +219,7 @@ vec2 flowtexTexture(vec2 coordinate, float sliceLevel, vec4 base, float spacing,
 {
   FlowtexSums sums = FlowtexSums(vec2(0.0), 0.0, 0.0);
   float speed = length(base.xyz);
-#ifndef FLOWTEX_IMAGE
+#ifndef FLOWTEX_PAINTED
   // Where the flow only crosses the surface, the share by which the texture fades, below zero.
   float shown = flowtexLayer(coordinate, 2, sliceLevel).w;
 #endif
@@ -253,7 +253,7 @@ vec2 flowtexTexture(vec2 coordinate, float sliceLevel, vec4 base, float spacing,
     else
       flowtexSides(sums, coordinate, sliceLevel, base.xyz, spacing, scale, count, false);
   }
-#ifdef FLOWTEX_IMAGE
+#ifdef FLOWTEX_PAINTED
   return vec2(0.0); // the colours have been gathered
 #else
   float near = sums.neighbours / sums.squares;

@@ -52,4 +52,7 @@ uniform vec2 u_stepSize;   // texels of the step texture
 uniform vec2 u_imageSize;  // texels of the image over the surface, with its repeats
 uniform vec2 u_imageRound; // 1 along an axis that closes on itself
 uniform float u_tiles;     // how often the image is repeated
+#ifndef FLOWTEX_PAINTED
+uniform float u_noiseDeviations[FLOWTEX_HALF_LEVELS]; // of noise at each mip level and half-way to the next
+#endif
 #endif

@@ -15,11 +15,14 @@
 #endif
   vec2 flowtexPlaced = flowtexCoordinateVSOutput;
 #ifdef FLOWTEX_IMAGE
-  flowtexValue(flowtexPlaced, flowtexImageVSOutput);
-  flowtexColour = flowtexPaint(flowtexBelow(flowtexColour, flowtexPlaced));
+  vec2 flowtexTextured = flowtexValue(flowtexPlaced, flowtexImageVSOutput);
 #else
   vec2 flowtexTextured = flowtexValue(flowtexPlaced, flowtexPositionVSOutput);
+#endif
   flowtexColour = flowtexBelow(flowtexColour, flowtexPlaced);
+#ifdef FLOWTEX_PAINTED
+  flowtexColour = flowtexPaint(flowtexColour);
+#else
   flowtexColour = flowtexShade(flowtexColour, flowtexTextured.x * flowtexTextured.y);
 #endif
 #endif

@@ -20,7 +20,7 @@ void main()
     discard;
   vec3 colour = texelFetch(u_below, pixel, 0).rgb;
   vec4 texture_ = texelFetch(u_texture, pixel, 0);
-#ifndef FLOWTEX_IMAGE
+#ifndef FLOWTEX_PAINTED
   if (u_even)
     texture_.x -= flowtexMeanAround(pixel);
   colour = flowtexShade(colour, texture_.x * texture_.y);

@@ -93,7 +93,7 @@ void main()
   vec3 colour = u_mapped ? flowtexMapped(flowtexShareAt(place.coordinate, triangle)) : u_colour;
   if (u_showLevel)
     colour = flowtexLevelColour(flowtexNoiseLevel);
-#ifdef FLOWTEX_IMAGE
+#ifdef FLOWTEX_PAINTED
   colour = flowtexPaint(colour);
 #endif
   float light = 1.0;

@@ -74,6 +74,7 @@ VIEWS: dict[str, tuple[Any, Any, float, dict[str, Any]]] = {
     "after many turns": (swinging, straight(1, (0, 0)), 1.0, {"time": 1e7 + 0.55}),
     "streamlines": (swinging, straight(1, (0, 0)), 1.0, {"lines": "streamlines"}),
     "image": (gyre, WHOLE, 1.0, {"noise": "image", "tiles": 3}),
+    "noise texture": (gyre, WHOLE, 1.0, {"noise": "texture", "resolution": 64, "grain": 2.0}),
     "streaming": (gyre, WHOLE, 1.0, {"motion": "uniform", "period": 3.0}),
     "without a sign": (lines, WHOLE, 1.0, {"kernel": "ramp", "two_sided": False}),
     "streaklets": (gyre, WHOLE, 1.0, {"texture": "streaklets", "two_sided": False}),
@@ -90,6 +91,8 @@ def uniforms_of(name: str) -> dict[str, Any]:
     image = as_picture(IMAGE) if settings.noise == "image" else None
     store = SliceStore(make(), lines=options.get("lines", "pathlines"))
     textures = TextureSet.build(store, image)
+    if settings.noise == "texture":
+        textures = textures.with_noise(settings.resolution, settings.seed)
     view = ViewState(
         focus=np.asarray(camera.focal_point, dtype=float),
         anchor=np.array([0.1, 0.2, 0.0]),

@@ -84,6 +84,7 @@ CASES: dict[str, tuple[Callable[[], FlowField], dict[str, Any]]] = {
     "streaming": (gyre, {"motion": "speed", "speed": 90.0}),
     "image": (gyre, LAID | {"tiles": 2}),
     "image, lod off": (gyre, LAID | {"lod": False, "two_sided": False, "kernel": "box"}),
+    "noise texture": (gyre, {"noise": "texture", "resolution": 128}),
     "unsteady": (swinging, {}),
     "unsteady image": (swinging, LAID),
     "no sign": (fibres, {}),

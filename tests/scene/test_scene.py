@@ -30,6 +30,8 @@ def field(steps: int = 1) -> flowtex.FlowField:
         ("samples", 9, "uniform", True, True),
         ("lod", False, "uniform", True, True),
         ("noise", "image", "shader", False, True),
+        ("noise", "texture", "shader", False, True),
+        ("seed", 3, "uniform", True, True),
         ("parameter", "time", "trace", False, False),
     ],
 )
@@ -44,6 +46,26 @@ def test_a_change_costs_what_the_table_says(
     assert heard == [affects]
     assert (scene.textures is before) == textures
     assert (scene.store is store) == traces
+
+
+@pytest.mark.parametrize(("name", "value"), [("seed", 3), ("resolution", 64)])
+def test_a_noise_texture_is_made_again_for_a_seed_and_a_resolution(name: str, value: int) -> None:
+    scene = Scene(field(), Settings(noise="texture", resolution=32))
+    heard: list[str] = []
+    before = scene.textures.image
+    scene.observe(heard.append)
+    scene.settings.update(**{name: value})
+    after = scene.textures.image
+    assert heard == ["textures"]
+    assert before is not None and after is not None
+    assert not np.array_equal(before.texels, after.texels)
+    assert after.texels.shape == (
+        max(scene.settings.resolution // 2, 8),
+        scene.settings.resolution,
+        1,
+    )
+    scene.settings.noise = "procedural"
+    assert scene.textures.image is None
 
 
 def test_a_closed_view_hears_nothing() -> None:

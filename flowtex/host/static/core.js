@@ -115,10 +115,10 @@ b],shading.fromLab),linear=times(roots.map(x=>x**3),shading.fromCones),grey=show
 grey)/Math.max(Math.abs(x-grey),1e-6)),room=Math.min(...rooms,1);linear.forEach((x,k)=>mean[k]+=255*fromLinear(grey+room*
 (x-grey))/values.length)}),mean}function runsOf(map){let runs=[];for(let n=0;n<map.length/4;n+=1)n>0&&[0,1,2].every(k=>map[4*
 n+k]===map[4*n-4+k])?runs[runs.length-1][1]=n+1:runs.push([n,n+1]);return runs}function rampOf(map,header,settings,stops){
-let count2=map.length/4,shown=n=>{let colour=[...map.slice(4*n,4*n+3)];return`rgb(${(header.image?colour:meanColour(colour,
-settings,header.constants.shading)).map(Math.round).join(" ")})`},runs=runsOf(map);return`linear-gradient(90deg, ${(runs.
-length<=MOST_STEPS?runs.map(([from,to])=>`${shown(from)} ${100*from/count2}% ${100*to/count2}%`):Array.from({length:stops},
-(_,n)=>shown(Math.round(n/(stops-1)*(count2-1))))).join(", ")})`}var NORTH=[0,0,1],STEEPEST=Math.sin(89*Math.PI/180),LEAST_COSINE=.2,LEAST_PARALLEL=.8,tangent=degrees=>Math.tan(degrees*
+let count2=map.length/4,hasOwn=!!header.image&&!header.image?.deviations,shown=n=>{let colour=[...map.slice(4*n,4*n+3)];
+return`rgb(${(hasOwn?colour:meanColour(colour,settings,header.constants.shading)).map(Math.round).join(" ")})`},runs=runsOf(
+map);return`linear-gradient(90deg, ${(runs.length<=MOST_STEPS?runs.map(([from,to])=>`${shown(from)} ${100*from/count2}% ${100*
+to/count2}%`):Array.from({length:stops},(_,n)=>shown(Math.round(n/(stops-1)*(count2-1))))).join(", ")})`}var NORTH=[0,0,1],STEEPEST=Math.sin(89*Math.PI/180),LEAST_COSINE=.2,LEAST_PARALLEL=.8,tangent=degrees=>Math.tan(degrees*
 Math.PI/360),Camera=class{flat;limits;aspect;state;start;pick=null;globe;homeHeight;nearest;constructor(state,limits,flat,aspect=1,globe=0){
 this.state=copyOf(state),this.start=copyOf(state),this.limits=limits,this.flat=flat,this.globe=globe,this.aspect=aspect,
 this.homeHeight=this.height,this.nearest=this.distance/limits.closest}get height(){let{parallel,parallel_scale:half,view_angle:angle}=this.
@@ -396,8 +396,8 @@ indexOf(kernel),u_lod:s.lod,u_contrast:s.contrast,u_strength:s.strength,u_even:i
 s.fade,u_seed:s.seed,u_showLevel:s.show_level,u_fixed:s.fixed_grain,...motionUniforms(header,s,view),...noiseOrigin(header,
 view,finest),...turnUniforms(header,view,finest),u_noiseFinest:finest,u_texel:geometry.extent/s.resolution,u_apart:arrowDistance(
 header,settings)*view.density,u_bySpeed:settings.arrow_length==="speed",u_arrowSides:slices.sides,u_pieces:constants.arrows.
-pieces,...header.image?imageUniforms(header.image,s.tiles,view.density):{}}}function isMoving(header,settings,still=!1){
-let streams=settings.motion!=="off"&&!isSignFree(header);return!header.image&&(streams||header.slices.steps>1&&!still)}function isSparse(header,settings){
+pieces,...header.image?imageUniforms(header.image,s,view.density):{}}}function isMoving(header,settings,still=!1){let streams=settings.
+motion!=="off"&&!isSignFree(header);return!header.image&&(streams||header.slices.steps>1&&!still)}function isSparse(header,settings){
 return!header.image&&settings.texture==="streaklets"}function isEven(header,settings){return!!(settings.lod&&!settings.fixed_grain)&&
 !header.image&&!isSparse(header,settings)}function hasArrows(header,settings){return Number(settings.arrows)>0&&!isSignFree(
 header)&&!header.image}function arrowDistance({constants},{arrows}){return constants.arrows.least*Math.max(Number(arrows),
@@ -421,10 +421,11 @@ across=toFrame(frame,[1,0,0]),[low,high]=ends2.map(end=>end-center[0]-dot2(acros
 even=scale2(across,(ends2[1]-ends2[0])/finest),odd=scale2(even,Math.SQRT1_2),wholeOf=turn=>turn.map(x=>Math.floor(x/cells)*
 cells),restOf=turn=>turn.map(x=>x-Math.floor(x/cells)*cells);return{u_ends:[across[0],across[1],low,high],u_turnEven:wholeOf(
 even),u_turnRestEven:restOf(even),u_turnOdd:wholeOf(odd),u_turnRestOdd:restOf(odd)}}function imageUniforms({size,stepSize,
-repeat},tiles,density){return{u_stepSize:stepSize.map(n=>n*density),u_imageSize:size.map(n=>n*density*tiles),u_imageRound:[
-Number(repeat[1]),Number(repeat[0])],u_tiles:tiles}}function momentOf(times2,time){if(times2.length<2)return[0,0,0];let step=0;
-for(;step<times2.length-2&&times2[step+1]<=time;)step+=1;let late=(time-times2[step])/(times2[step+1]-times2[step]);return[
-step,step+1,clamp(late,0,1)]}var SERIES_STEP_S=.5,SERIES_LEAST_S=6,SERIES_MOST_S=60,LONGEST_GAP_S=.5,Player=class{time=0;clock=0;playing=!1;pace=1;times=[
+repeat,deviations},s,density){let tiles=deviations?1:s.tiles,texels=density*(deviations?s.grain:tiles);return{u_stepSize:stepSize.
+map(n=>n*density),u_imageSize:size.map(n=>n*texels),u_imageRound:[Number(repeat[1]),Number(repeat[0])],u_tiles:tiles,...deviations?
+{u_noiseDeviations:deviations}:{}}}function momentOf(times2,time){if(times2.length<2)return[0,0,0];let step=0;for(;step<
+times2.length-2&&times2[step+1]<=time;)step+=1;let late=(time-times2[step])/(times2[step+1]-times2[step]);return[step,step+
+1,clamp(late,0,1)]}var SERIES_STEP_S=.5,SERIES_LEAST_S=6,SERIES_MOST_S=60,LONGEST_GAP_S=.5,Player=class{time=0;clock=0;playing=!1;pace=1;times=[
 0];lastFrame=0;hasHeader=!1;setHeader(header){let{times:times2}=header.slices;(!(times2.length===this.times.length&&times2.
 every((t,n)=>t===this.times[n]))||!this.hasHeader)&&(this.time=header.time,this.clock=header.clock),this.hasHeader=!0,this.
 times=times2}get varies(){return this.times.length>1}get span(){return[this.times[0],this.times[this.times.length-1]]}get moment(){
@@ -767,33 +768,33 @@ findIndex(other=>other>=value);return n<0||value<values[0]?NaN:n===0?0:n-1+(valu
 let{scene,place,position}=at,{geometry,image}=scene.header,{height,ray}=camera.at(position),pixel=2*height/rows;if(image){
 let normal=cross2(...sidesAt(scene,place)),facing=Math.max(Math.abs(dot2(unit(normal),ray)),LEAST_FACING),[across,up]=[image.
 alongI,image.alongJ].map((along2,axis)=>{let n=Math.min(Math.floor(place[axis]),along2.length-2);return(along2[n+1]-along2[n])*
-image.stepSize[axis]}),texel2=Math.sqrt(length2(normal)/(across*up));return settings.lod?Math.max(pixel/Math.sqrt(facing),
-texel2):texel2}let texel=geometry.extent/Number(settings.resolution);if(!settings.lod)return texel;let grain=pixel*footprintAt(
-at,camera).side*Number(settings.grain);return settings.fixed_grain?Math.max(grain,texel):grain}function stretchAt(at,settings,camera){
-if(at.scene.header.image||!settings.lod||settings.fixed_grain)return 1;let{side,across,area}=footprintAt(at,camera);if(!across)
-return 1;let stretch=clamp(area/(across*side),1/MOST_STRETCH,MOST_STRETCH);return Math.abs(stretch-1)<LEAST_STRETCH?1:stretch}
-function footprintAt(at,camera){let{geometry}=at.scene.header,normal=unit(cross2(...sidesAt(at.scene,at.place))),across=unit(
-cross2(normal,fromFrame(geometry.frame,layersAt(at)(0).slice(0,3)))),{ray}=camera.at(at.position),slant=dot2(normal,ray),
-facing=(slant<0?-1:1)*Math.max(Math.abs(slant),LEAST_FACING),[dx,dy]=camera.axes.slice(0,2).map(axis=>add(axis,ray,-dot2(
-normal,axis)/facing)),area=length2(cross2(dx,dy)),half=.5*(dot2(dx,dx)+dot2(dy,dy)),longer=Math.sqrt(half+Math.sqrt(Math.
-max(half**2-area**2,0))),mean=Math.sqrt(longer*Math.max(area/longer,LEAST_ROUND*longer)),aside=Math.hypot(dot2(dx,across),
-dot2(dy,across));return{side:Math.max(mean,LEAST_ACROSS*aside),across:aside,area}}function upTo(start,side,most){let result2=[],
-[from,left]=[start,most];for(let point of side){let step=length2(subtract2(point,from));if(step>=left){left>0&&result2.push(
-add(from,subtract2(point,from),left/(step||1)));break}result2.push(point),left-=step,from=point}return result2}function stepsAround([
-before,after,late]){return before===after?[[[before,before,0],1]]:[[[before,before,0],1-late],[[after,after,0],late]]}function velocityAt(at){
-let velocity=[0,0,0];for(let[moment,share]of stepsAround(at.moment))share&&(velocity=add(velocity,velocityAtStep({...at,
-moment}),share));return velocity}function velocityAtStep(at){let{scene,position}=at,{slices,image,speed}=scene.header,layers=layersAt(
-at),[x,y,z]=layers(0),slope=[x,y,z],small=scale2(slope,SMALL*(image?1/image.stepSize[0]:slices.cell)/(length2(slope)||1)),
-along2=length2(slope)>LEAST_SLOPE?subtract2(mover(at)(small)??position,position):slope;return scale2(unit(along2),layers(
-SPEED_LAYER)[3]*speed.typical)}function pathThrough(at,settings,camera,rows){let{scene,position}=at,{slices,image}=scene.
-header,layers=layersAt(at),directed=!isSignFree(scene.header),base=layers(0),slope=[base[0],base[1],base[2]],moved=mover(
-at),whole=[],sides=settings.two_sided||!directed?slices.sides:1;for(let side=0;side<sides&&length2(slope)>LEAST_SLOPE;side+=
-1){let by=image?1:base[3]*slices.unit,points=sideOf(layers,slices.lags,side*slices.lags.length,side?1:-1,by).map(moved),
-end=points.findIndex(point=>point===null);whole.push(points.slice(0,end<0?void 0:end))}let set=Number(settings.samples),
-samples=isMoving(scene.header,settings,!0)?2*set-1:set,count2=(sides===2?Math.floor(samples/2):samples-1)*stretchAt(at,settings,
-camera),step=Number(settings.spacing)*grainAt(at,settings,camera,rows),joined=reach=>{let[back=[],ahead=[]]=whole.map(side=>upTo(
-position,side,reach));return[...back.reverse(),position,...ahead]};return{path:joined(PATH_LENGTH*Math.max(count2,FEWEST_SAMPLES)*
-step),sampled:joined(count2*step),directed,velocity:velocityAt(at)}}var MOST_CELLS=8,ROUNDING2=1e-6,SKEW=.001,POLE_LATITUDE=89.99,turned=lon=>lon-360*Math.round(lon/360);function cornersOf2([
+image.stepSize[axis]}),texel2=Math.sqrt(length2(normal)/(across*up)),grain2=image.deviations?pixel*Number(settings.grain):
+pixel;return settings.lod?Math.max(grain2/Math.sqrt(facing),texel2):texel2}let texel=geometry.extent/Number(settings.resolution);
+if(!settings.lod)return texel;let grain=pixel*footprintAt(at,camera).side*Number(settings.grain);return settings.fixed_grain?
+Math.max(grain,texel):grain}function stretchAt(at,settings,camera){if(at.scene.header.image||!settings.lod||settings.fixed_grain)
+return 1;let{side,across,area}=footprintAt(at,camera);if(!across)return 1;let stretch=clamp(area/(across*side),1/MOST_STRETCH,
+MOST_STRETCH);return Math.abs(stretch-1)<LEAST_STRETCH?1:stretch}function footprintAt(at,camera){let{geometry}=at.scene.
+header,normal=unit(cross2(...sidesAt(at.scene,at.place))),across=unit(cross2(normal,fromFrame(geometry.frame,layersAt(at)(
+0).slice(0,3)))),{ray}=camera.at(at.position),slant=dot2(normal,ray),facing=(slant<0?-1:1)*Math.max(Math.abs(slant),LEAST_FACING),
+[dx,dy]=camera.axes.slice(0,2).map(axis=>add(axis,ray,-dot2(normal,axis)/facing)),area=length2(cross2(dx,dy)),half=.5*(dot2(
+dx,dx)+dot2(dy,dy)),longer=Math.sqrt(half+Math.sqrt(Math.max(half**2-area**2,0))),mean=Math.sqrt(longer*Math.max(area/longer,
+LEAST_ROUND*longer)),aside=Math.hypot(dot2(dx,across),dot2(dy,across));return{side:Math.max(mean,LEAST_ACROSS*aside),across:aside,
+area}}function upTo(start,side,most){let result2=[],[from,left]=[start,most];for(let point of side){let step=length2(subtract2(
+point,from));if(step>=left){left>0&&result2.push(add(from,subtract2(point,from),left/(step||1)));break}result2.push(point),
+left-=step,from=point}return result2}function stepsAround([before,after,late]){return before===after?[[[before,before,0],
+1]]:[[[before,before,0],1-late],[[after,after,0],late]]}function velocityAt(at){let velocity=[0,0,0];for(let[moment,share]of stepsAround(
+at.moment))share&&(velocity=add(velocity,velocityAtStep({...at,moment}),share));return velocity}function velocityAtStep(at){
+let{scene,position}=at,{slices,image,speed}=scene.header,layers=layersAt(at),[x,y,z]=layers(0),slope=[x,y,z],small=scale2(
+slope,SMALL*(image?1/image.stepSize[0]:slices.cell)/(length2(slope)||1)),along2=length2(slope)>LEAST_SLOPE?subtract2(mover(
+at)(small)??position,position):slope;return scale2(unit(along2),layers(SPEED_LAYER)[3]*speed.typical)}function pathThrough(at,settings,camera,rows){
+let{scene,position}=at,{slices,image}=scene.header,layers=layersAt(at),directed=!isSignFree(scene.header),base=layers(0),
+slope=[base[0],base[1],base[2]],moved=mover(at),whole=[],sides=settings.two_sided||!directed?slices.sides:1;for(let side=0;side<
+sides&&length2(slope)>LEAST_SLOPE;side+=1){let by=image?1:base[3]*slices.unit,points=sideOf(layers,slices.lags,side*slices.
+lags.length,side?1:-1,by).map(moved),end=points.findIndex(point=>point===null);whole.push(points.slice(0,end<0?void 0:end))}
+let set=Number(settings.samples),samples=isMoving(scene.header,settings,!0)?2*set-1:set,count2=(sides===2?Math.floor(samples/
+2):samples-1)*stretchAt(at,settings,camera),step=Number(settings.spacing)*grainAt(at,settings,camera,rows),joined=reach=>{
+let[back=[],ahead=[]]=whole.map(side=>upTo(position,side,reach));return[...back.reverse(),position,...ahead]};return{path:joined(
+PATH_LENGTH*Math.max(count2,FEWEST_SAMPLES)*step),sampled:joined(count2*step),directed,velocity:velocityAt(at)}}var MOST_CELLS=8,ROUNDING2=1e-6,SKEW=.001,POLE_LATITUDE=89.99,turned=lon=>lon-360*Math.round(lon/360);function cornersOf2([
 i,j]){return[[i,j],[i+1,j],[i,j+1],[i+1,j+1]]}function cellOf({header},place){return place.map((at,axis)=>clamp(Math.floor(
 at),0,header.geometry.shape[1-axis]-2))}var sharesOf=([s,t])=>[(1-s)*(1-t),s*(1-t),(1-s)*t,s*t];function sharesIn(scene,cell,[
 lon,lat],places){let{earth}=scene.header,known=cornersOf2(cell).map(node=>earth&&lonLatOf(earth,nodeAt(scene,node),places));
@@ -1385,10 +1386,10 @@ after+1:0,kept=[before,after,next,after+1,...this.wanted];for(let name of[...thi
 ces/")&&!kept.includes(stepOf(name))&&this.drop(name)}bindTextures(before,after){let gl=this.graphics.context,{image,scalars}=this.
 header,steps=String(this.scalarParts(before,after));steps!==this.scalarSteps&&this.drop("scalar"),this.scalarSteps=steps,
 this.dropSlices(before,after),this.bind("u_slices",this.slices(before)),this.bind("u_slicesNext",after===before?null:this.
-slices(after)),this.bind("u_image",image&&this.image("image",[!0,!0])),this.bind("u_stepImage",image&&this.image("step",
-image.repeat));let colours=texelsOf(this.parts.get("cmap")?.data??new Uint8Array(4),scalars);this.bind("u_cmap",this.table(
-"cmap",this.key(["cmap"],scalars.beyond),gl.RGBA32F,colours.length/4,()=>colours));let[key,values]=this.shares(before,after);
-this.bind("u_shares",scalars.name===null?null:this.table("scalar",key,gl.RG32F,this.nodesSize[1],values));let along2=()=>alongAxes(
+slices(after)),this.bind("u_image",image&&this.image("image",image.repeated)),this.bind("u_stepImage",image&&this.image(
+"step",image.repeat));let colours=texelsOf(this.parts.get("cmap")?.data??new Uint8Array(4),scalars);this.bind("u_cmap",this.
+table("cmap",this.key(["cmap"],scalars.beyond),gl.RGBA32F,colours.length/4,()=>colours));let[key,values]=this.shares(before,
+after);this.bind("u_shares",scalars.name===null?null:this.table("scalar",key,gl.RG32F,this.nodesSize[1],values));let along2=()=>alongAxes(
 image?.alongI??[],image?.alongJ??[]);this.bind("u_along",image&&this.table("along","",gl.RG32F,Math.max(image.alongI.length,
 image.alongJ.length),along2))}};function nearest2(gl,target){gl.texParameteri(target,gl.TEXTURE_MIN_FILTER,gl.NEAREST),gl.
 texParameteri(target,gl.TEXTURE_MAG_FILTER,gl.NEAREST)}function filled(data,length3){if(data.length===length3)return data;
@@ -1622,10 +1623,11 @@ button",title:name,"aria-label":name,"data-cmap":name}))),names.forEach((name,n)
 return this.swatches.children[n]}takeRange(){let[low,high]=this.ends.map(end=>end.valueAsNumber);this.rangeRow.title="",
 low<high?this.viewer.chooseColours({clim:[low,high]}):this.rangeRow.title=`${numberText(low)} is not below ${numberText(
 high)}`;for(let end of this.ends)end.setCustomValidity(this.rangeRow.title)}};var SLIDER_STOPS=400;function hasStreaming({slices,image,variant}){return slices.steps===1&&!image&&!isSignFree({variant})}
-var USES={motion:hasStreaming,speed:hasStreaming,speed_in:hasStreaming,period:hasStreaming,grain:({image})=>!image,fixed_grain:({
-image})=>!image,two_sided:({slices})=>slices.sides===2,seed:({image})=>!image,resolution:({image})=>!image,tiles:({image})=>!!image,
-lines:({slices},rebuild)=>slices.steps>1&&rebuild,parameter:({slices,settings},rebuild)=>rebuild&&(slices.steps===1||settings.
-lines!=="pathlines"),critical_points:({structure})=>!!structure?.parts.includes("critical"),separatrices:({structure})=>!!structure?.
+var USES={motion:hasStreaming,speed:hasStreaming,speed_in:hasStreaming,period:hasStreaming,grain:({image})=>!image||!!image.
+deviations,fixed_grain:({image})=>!image,two_sided:({slices})=>slices.sides===2,seed:({image},rebuild)=>!image||!!image.
+deviations&&rebuild,resolution:({image},rebuild)=>!image||!!image.deviations&&rebuild,tiles:({image})=>!!image&&!image?.
+deviations,lines:({slices},rebuild)=>slices.steps>1&&rebuild,parameter:({slices,settings},rebuild)=>rebuild&&(slices.steps===
+1||settings.lines!=="pathlines"),critical_points:({structure})=>!!structure?.parts.includes("critical"),separatrices:({structure})=>!!structure?.
 parts.includes("separatrices"),nullclines:({structure})=>!!structure?.parts.includes("nullclines"),lod:()=>!1,show_level:()=>!1};
 function isUseful({name,affects},header,rebuild){return USES[name]?.(header,rebuild)??(affects==="uniform"||rebuild)}function isInUse({
 needs=[]},settings){let holds=needs.map(([name,sign,value])=>settings[name]===value==(sign==="=="));return!needs.length||

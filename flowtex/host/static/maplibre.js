@@ -285,7 +285,7 @@ lags.length,u_sides:o.two_sided||i||u?n.sides:1,u_unit:n.unit,u_rateLayer:n.coun
 2*o.samples-1:o.samples,u_spacing:o.spacing,u_grain:o.grain*t.density,u_kernel:s.kernels.indexOf(p),u_lod:o.lod,u_contrast:o.
 contrast,u_strength:o.strength,u_even:wr(a,e),u_fade:i?0:o.fade,u_seed:o.seed,u_showLevel:o.show_level,u_fixed:o.fixed_grain,
 ...Oo(a,o,t),...Fo(a,t,c),...No(a,t,c),u_noiseFinest:c,u_texel:r.extent/o.resolution,u_apart:Mr(a,e)*t.density,u_bySpeed:e.
-arrow_length==="speed",u_arrowSides:n.sides,u_pieces:s.arrows.pieces,...a.image?Io(a.image,o.tiles,t.density):{}}}function ct(a,e,t=!1){
+arrow_length==="speed",u_arrowSides:n.sides,u_pieces:s.arrows.pieces,...a.image?Io(a.image,o,t.density):{}}}function ct(a,e,t=!1){
 let r=e.motion!=="off"&&!me(a);return!a.image&&(r||a.slices.steps>1&&!t)}function vr(a,e){return!a.image&&e.texture==="s\
 treaklets"}function wr(a,e){return!!(e.lod&&!e.fixed_grain)&&!a.image&&!vr(a,e)}function Le(a,e){return Number(e.arrows)>
 0&&!me(a)&&!a.image}function Mr({constants:a},{arrows:e}){return a.arrows.least*Math.max(Number(e),a.arrows.mostDense)}function lt(a,e,t){
@@ -302,9 +302,9 @@ h=i.map(p=>_(Math.round(p/t/l),-c,c)*l),u=h.map(p=>p/Math.SQRT2),m=u.map(p=>Math
 ends:r,geometry:n,constants:s}=a;if(!r)return{};let{frame:o,center:i}=n,c=F(o,[1,0,0]),[l,h]=r.map(b=>b-i[0]-A(c,e.anchor)),
 u=2**s.clearDoublings,m=k(c,(r[1]-r[0])/t),p=k(m,Math.SQRT1_2),f=b=>b.map(g=>Math.floor(g/u)*u),d=b=>b.map(g=>g-Math.floor(
 g/u)*u);return{u_ends:[c[0],c[1],l,h],u_turnEven:f(m),u_turnRestEven:d(m),u_turnOdd:f(p),u_turnRestOdd:d(p)}}function Io({
-size:a,stepSize:e,repeat:t},r,n){return{u_stepSize:e.map(s=>s*n),u_imageSize:a.map(s=>s*n*r),u_imageRound:[Number(t[1]),
-Number(t[0])],u_tiles:r}}function Er(a,e){if(a.length<2)return[0,0,0];let t=0;for(;t<a.length-2&&a[t+1]<=e;)t+=1;let r=(e-
-a[t])/(a[t+1]-a[t]);return[t,t+1,_(r,0,1)]}var Co=.5,Uo=6,Vo=60,Do=.5,ht=class{time=0;clock=0;playing=!1;pace=1;times=[0];lastFrame=0;hasHeader=!1;setHeader(e){let{
+size:a,stepSize:e,repeat:t,deviations:r},n,s){let o=r?1:n.tiles,i=s*(r?n.grain:o);return{u_stepSize:e.map(c=>c*s),u_imageSize:a.
+map(c=>c*i),u_imageRound:[Number(t[1]),Number(t[0])],u_tiles:o,...r?{u_noiseDeviations:r}:{}}}function Er(a,e){if(a.length<
+2)return[0,0,0];let t=0;for(;t<a.length-2&&a[t+1]<=e;)t+=1;let r=(e-a[t])/(a[t+1]-a[t]);return[t,t+1,_(r,0,1)]}var Co=.5,Uo=6,Vo=60,Do=.5,ht=class{time=0;clock=0;playing=!1;pace=1;times=[0];lastFrame=0;hasHeader=!1;setHeader(e){let{
 times:t}=e.slices;(!(t.length===this.times.length&&t.every((n,s)=>n===this.times[s]))||!this.hasHeader)&&(this.time=e.time,
 this.clock=e.clock),this.hasHeader=!0,this.times=t}get varies(){return this.times.length>1}get span(){return[this.times[0],
 this.times[this.times.length-1]]}get moment(){return Er(this.times,this.time)}timeOf([e,t,r]){return this.times[e]+r*(this.
@@ -389,23 +389,24 @@ shape:t,triangles:r}=a.header.geometry;if(r){let i=(c,l)=>Fe(a,Oe(Math.floor(e[1
 i(0,0))]}let[n,s]=e.map((i,c)=>_(i,.5,t[1-c]-1.5)),o=(i,c)=>Fe(a,[n+i,s+c]);return[E(o(.5,0),o(-.5,0)),E(o(0,.5),o(0,-.5))]}function is(a,e){let t=Math.min(Math.floor(e),a.length-2);return a[t]+(e-t)*(a[t+1]-a[t])}function cs(a,e){let t=a.findIndex(
 r=>r>=e);return t<0||e<a[0]?NaN:t===0?0:t-1+(e-a[t-1])/(a[t]-a[t-1])}function ai(a,e,t,r){let{scene:n,place:s,position:o}=a,
 {geometry:i,image:c}=n.header,{height:l,ray:h}=t.at(o),u=2*l/r;if(c){let f=N(...ps(n,s)),d=Math.max(Math.abs(A(C(f),h)),
-hs),[b,g]=[c.alongI,c.alongJ].map((x,v)=>{let w=Math.min(Math.floor(s[v]),x.length-2);return(x[w+1]-x[w])*c.stepSize[v]}),
-y=Math.sqrt(O(f)/(b*g));return e.lod?Math.max(u/Math.sqrt(d),y):y}let m=i.extent/Number(e.resolution);if(!e.lod)return m;
-let p=u*fs(a,t).side*Number(e.grain);return e.fixed_grain?Math.max(p,m):p}function oi(a,e,t){if(a.scene.header.image||!e.
-lod||e.fixed_grain)return 1;let{side:r,across:n,area:s}=fs(a,t);if(!n)return 1;let o=_(s/(n*r),1/os,os);return Math.abs(
-o-1)<ei?1:o}function fs(a,e){let{geometry:t}=a.scene.header,r=C(N(...ps(a.scene,a.place))),n=C(N(r,K(t.frame,Pr(a)(0).slice(
-0,3)))),{ray:s}=e.at(a.position),o=A(r,s),i=(o<0?-1:1)*Math.max(Math.abs(o),hs),[c,l]=e.axes.slice(0,2).map(d=>T(d,s,-A(
-r,d)/i)),h=O(N(c,l)),u=.5*(A(c,c)+A(l,l)),m=Math.sqrt(u+Math.sqrt(Math.max(u**2-h**2,0))),p=Math.sqrt(m*Math.max(h/m,Zo*
-m)),f=Math.hypot(A(c,n),A(l,n));return{side:Math.max(p,Qo*f),across:f,area:h}}function ii(a,e,t){let r=[],[n,s]=[a,t];for(let o of e){
-let i=O(E(o,n));if(i>=s){s>0&&r.push(T(n,E(o,n),s/(i||1)));break}r.push(o),s-=i,n=o}return r}function ds([a,e,t]){return a===
-e?[[[a,a,0],1]]:[[[a,a,0],1-t],[[e,e,0],t]]}function Rr(a){let e=[0,0,0];for(let[t,r]of ds(a.moment))r&&(e=T(e,ci({...a,
-moment:t}),r));return e}function ci(a){let{scene:e,position:t}=a,{slices:r,image:n,speed:s}=e.header,o=Pr(a),[i,c,l]=o(0),
-h=[i,c,l],u=k(h,ti*(n?1/n.stepSize[0]:r.cell)/(O(h)||1)),m=O(h)>us?E(ms(a)(u)??t,t):h;return k(C(m),o(ls)[3]*s.typical)}
-function bs(a,e,t,r){let{scene:n,position:s}=a,{slices:o,image:i}=n.header,c=Pr(a),l=!me(n.header),h=c(0),u=[h[0],h[1],h[2]],
-m=ms(a),p=[],f=e.two_sided||!l?o.sides:1;for(let M=0;M<f&&O(u)>us;M+=1){let P=i?1:h[3]*o.unit,R=si(c,o.lags,M*o.lags.length,
-M?1:-1,P).map(m),L=R.findIndex(U=>U===null);p.push(R.slice(0,L<0?void 0:L))}let d=Number(e.samples),b=ct(n.header,e,!0)?
-2*d-1:d,y=(f===2?Math.floor(b/2):b-1)*oi(a,e,t),x=Number(e.spacing)*ai(a,e,t,r),v=M=>{let[P=[],S=[]]=p.map(R=>ii(s,R,M));
-return[...P.reverse(),s,...S]};return{path:v(Ko*Math.max(y,Jo)*x),sampled:v(y*x),directed:l,velocity:Rr(a)}}var li=8,hi=1e-6,ui=.001,mi=89.99,pi=a=>a-360*Math.round(a/360);function Lr([a,e]){return[[a,e],[a+1,e],[a,e+1],[a+1,e+1]]}
+hs),[b,g]=[c.alongI,c.alongJ].map((v,w)=>{let M=Math.min(Math.floor(s[w]),v.length-2);return(v[M+1]-v[M])*c.stepSize[w]}),
+y=Math.sqrt(O(f)/(b*g)),x=c.deviations?u*Number(e.grain):u;return e.lod?Math.max(x/Math.sqrt(d),y):y}let m=i.extent/Number(
+e.resolution);if(!e.lod)return m;let p=u*fs(a,t).side*Number(e.grain);return e.fixed_grain?Math.max(p,m):p}function oi(a,e,t){
+if(a.scene.header.image||!e.lod||e.fixed_grain)return 1;let{side:r,across:n,area:s}=fs(a,t);if(!n)return 1;let o=_(s/(n*
+r),1/os,os);return Math.abs(o-1)<ei?1:o}function fs(a,e){let{geometry:t}=a.scene.header,r=C(N(...ps(a.scene,a.place))),n=C(
+N(r,K(t.frame,Pr(a)(0).slice(0,3)))),{ray:s}=e.at(a.position),o=A(r,s),i=(o<0?-1:1)*Math.max(Math.abs(o),hs),[c,l]=e.axes.
+slice(0,2).map(d=>T(d,s,-A(r,d)/i)),h=O(N(c,l)),u=.5*(A(c,c)+A(l,l)),m=Math.sqrt(u+Math.sqrt(Math.max(u**2-h**2,0))),p=Math.
+sqrt(m*Math.max(h/m,Zo*m)),f=Math.hypot(A(c,n),A(l,n));return{side:Math.max(p,Qo*f),across:f,area:h}}function ii(a,e,t){
+let r=[],[n,s]=[a,t];for(let o of e){let i=O(E(o,n));if(i>=s){s>0&&r.push(T(n,E(o,n),s/(i||1)));break}r.push(o),s-=i,n=o}
+return r}function ds([a,e,t]){return a===e?[[[a,a,0],1]]:[[[a,a,0],1-t],[[e,e,0],t]]}function Rr(a){let e=[0,0,0];for(let[
+t,r]of ds(a.moment))r&&(e=T(e,ci({...a,moment:t}),r));return e}function ci(a){let{scene:e,position:t}=a,{slices:r,image:n,
+speed:s}=e.header,o=Pr(a),[i,c,l]=o(0),h=[i,c,l],u=k(h,ti*(n?1/n.stepSize[0]:r.cell)/(O(h)||1)),m=O(h)>us?E(ms(a)(u)??t,
+t):h;return k(C(m),o(ls)[3]*s.typical)}function bs(a,e,t,r){let{scene:n,position:s}=a,{slices:o,image:i}=n.header,c=Pr(a),
+l=!me(n.header),h=c(0),u=[h[0],h[1],h[2]],m=ms(a),p=[],f=e.two_sided||!l?o.sides:1;for(let M=0;M<f&&O(u)>us;M+=1){let P=i?
+1:h[3]*o.unit,R=si(c,o.lags,M*o.lags.length,M?1:-1,P).map(m),L=R.findIndex(U=>U===null);p.push(R.slice(0,L<0?void 0:L))}
+let d=Number(e.samples),b=ct(n.header,e,!0)?2*d-1:d,y=(f===2?Math.floor(b/2):b-1)*oi(a,e,t),x=Number(e.spacing)*ai(a,e,t,
+r),v=M=>{let[P=[],S=[]]=p.map(R=>ii(s,R,M));return[...P.reverse(),s,...S]};return{path:v(Ko*Math.max(y,Jo)*x),sampled:v(
+y*x),directed:l,velocity:Rr(a)}}var li=8,hi=1e-6,ui=.001,mi=89.99,pi=a=>a-360*Math.round(a/360);function Lr([a,e]){return[[a,e],[a+1,e],[a,e+1],[a+1,e+1]]}
 function xt({header:a},e){return e.map((t,r)=>_(Math.floor(t),0,a.geometry.shape[1-r]-2))}var gs=([a,e])=>[(1-a)*(1-e),a*
 (1-e),(1-a)*e,a*e];function ys(a,e,[t,r],n){let{earth:s}=a.header,o=Lr(e).map(d=>s&&yt(s,Ne(a,d),n));if(o.some(d=>!d||Math.
 abs(d[1])>mi))return null;let[i,c,l,h]=o.map(d=>[pi(d[0]-t),d[1]-r]),[u,m]=[c,l].map(d=>[d[0]-i[0],d[1]-i[1]]),p=Math.max(
@@ -840,7 +841,7 @@ n.TEXTURE_2D_ARRAY,0,0,0,u,s,o,1,h,n.HALF_FLOAT,r(u));l&&n.generateMipmap(n.TEXT
 this.header.slices.steps?t+1:0,n=[e,t,r,t+1,...this.wanted];for(let s of[...this.resources.keys()])s.startsWith("slices/")&&
 !n.includes(Y(s))&&this.drop(s)}bindTextures(e,t){let r=this.graphics.context,{image:n,scalars:s}=this.header,o=String(this.
 scalarParts(e,t));o!==this.scalarSteps&&this.drop("scalar"),this.scalarSteps=o,this.dropSlices(e,t),this.bind("u_slices",
-this.slices(e)),this.bind("u_slicesNext",t===e?null:this.slices(t)),this.bind("u_image",n&&this.image("image",[!0,!0])),
+this.slices(e)),this.bind("u_slicesNext",t===e?null:this.slices(t)),this.bind("u_image",n&&this.image("image",n.repeated)),
 this.bind("u_stepImage",n&&this.image("step",n.repeat));let i=xn(this.parts.get("cmap")?.data??new Uint8Array(4),s);this.
 bind("u_cmap",this.table("cmap",this.key(["cmap"],s.beyond),r.RGBA32F,i.length/4,()=>i));let[c,l]=this.shares(e,t);this.
 bind("u_shares",s.name===null?null:this.table("scalar",c,r.RG32F,this.nodesSize[1],l));let h=()=>Jn(n?.alongI??[],n?.alongJ??

@@ -15,12 +15,14 @@ from flowtex.rendering.cpu.even import local_mean
 from flowtex.rendering.cpu.fragments import Fragments, level_colour, slice_level
 from flowtex.rendering.cpu.mipmaps import Mips
 from flowtex.rendering.cpu.noise import ImageLookup, ImageMips, SpaceNoise
+from flowtex.rendering.cpu.noise_texture import NoiseImages
 from flowtex.rendering.cpu.path import AxisSlices, Slices, TriangleSlices
 from flowtex.rendering.cpu.raster import cover
 from flowtex.rendering.cpu.shade import paint, shade
 from flowtex.rendering.cpu.texture import LookupMaker, Summing
 from flowtex.rendering.uniforms import Values, ViewState, uniforms
 from flowtex.settings import Settings
+from flowtex.textures.noise_textures import NoiseTextures
 from flowtex.textures.texture_set import TextureSet
 
 PART = 1 << 14  #: Fragments that are drawn together, so few that their arrays stay in the cache.
@@ -92,13 +94,15 @@ def render(
         summing = Summing(slices, values, part_lookup, by_lag=textures.image is not None)
         texture, factor = summing.shares(part.place, level[selection], part.by)
         value.append(texture)
-        share.append(factor * part.rim(np.asarray(values["u_eye"])))
+        if textures.image is None:
+            factor = factor * part.rim(np.asarray(values["u_eye"]))
+        share.append(factor)
         noise_level.append(part_lookup.level)
     image = partial(_image, pixel=coverage.pixel, size=size)
     texture = image(np.concatenate(value[1:] or value))
     if values["u_even"]:
         texture -= local_mean(texture, values["u_grain"])
-    if textures.image is None:
+    if texture.ndim == 2:  # an image keeps its colours
         texture *= image(np.concatenate(share))
     geometry = textures.geometry
     points = (geometry.field.surface.points - geometry.center).reshape(-1, 3)
@@ -157,6 +161,8 @@ def lookup_maker(textures: TextureSet) -> LookupMaker:
     planar = textures.geometry.planar
     if image is None:
         return lambda fragments, values: SpaceNoise(fragments, values, planar=planar)
+    if isinstance(image, NoiseTextures):
+        return NoiseImages(image).lookup
     mips = ImageMips(image)
     return lambda fragments, values: ImageLookup(fragments, values, mips)
 

@@ -363,7 +363,7 @@ class FlowLayer:
         if (corners := geometry.corners) is not None:
             loaders["u_corners"] = lambda: single(_corners(corners))
         if (image := self.textures.image) is not None:
-            loaders["u_image"] = partial(send, image.texels[None], repeat=(True, True))
+            loaders["u_image"] = partial(send, image.texels[None], repeat=image.repeated)
             loaders["u_stepImage"] = partial(
                 send, image.step[None, :, :, None], repeat=image.repeat
             )

@@ -42,6 +42,7 @@ from flowtex.rendering.webgl.velocity import (
 )
 from flowtex.settings import NEEDS, TABLE, Settings
 from flowtex.textures.images import ImageTextures
+from flowtex.textures.noise_textures import NoiseTextures
 from flowtex.textures.texture_set import TextureSet
 from flowtex.textures.tiles.blocks import BLOCK_CELLS, block_places
 from flowtex.textures.tiles.pyramid import PATH_CELLS, Pyramid, TileKey
@@ -485,8 +486,13 @@ def _pyramid(pyramid: Pyramid, finest: int) -> Header:
 
 
 def _image(image: ImageTextures) -> Header:
+    deviations = None
+    if isinstance(image, NoiseTextures):
+        deviations = image.deviations
     return {
         "size": list(image.texels.shape[1::-1]),
+        "deviations": deviations,
+        "repeated": list(image.repeated),
         "stepSize": list(image.step.shape[::-1]),
         "repeat": [bool(r) for r in image.repeat],
         "alongI": plain_list(image.along_i),

@@ -7,8 +7,8 @@ import pytest
 
 from flowtex import FlowField
 from flowtex.examples import cylinder_field
+from flowtex.textures.noise_textures import NoiseTextures
 from flowtex.trace.store import SliceStore
-from paper.noise_texture import NoiseTextures
 
 
 def stretched(count: int = 41, power: float = 2.5) -> FlowField:
@@ -41,7 +41,7 @@ def test_correction_makes_the_grain_even_on_the_surface() -> None:
 
     def spread(noise: NoiseTextures) -> float:
         """Ninth over first decile of the lengths of grains along a row."""
-        row = noise.texels[noise.texels.shape[0] // 2]
+        row = noise.texels[noise.texels.shape[0] // 2, :, 0]
         edges = (np.flatnonzero(np.diff(row)) + 1) / len(row)
         grains = np.diff(np.interp(edges, noise.along_i, x))
         return float(np.quantile(grains, 0.9) / np.quantile(grains, 0.1))
