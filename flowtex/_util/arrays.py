@@ -10,6 +10,8 @@ from flowtex._util.array_types import Floats, Indices
 
 #: Nodes of a block, so few that what is computed of them stays in a processor's cache.
 BLOCK_NODES = 16384
+#: Greatest range of keys, as a multiple of their number, that are looked up in a table.
+MOST_SPARSE = 16
 
 
 def row_blocks(rows: int, columns: int) -> Iterator[slice]:
@@ -51,6 +53,23 @@ def bounds(points: Floats) -> Floats:
     while ends[0].ndim > 1:
         ends = [ends[0].min(axis=0), ends[1].max(axis=0)]
     return np.stack(ends)
+
+
+def numbered(keys: Indices) -> tuple[Indices, Indices]:
+    """Return different keys in their order, and for each key (n,) its number among these.
+
+    Keys that fill much of their range are found in a table, in a third of the time of sorting.
+    """
+    low = int(keys.min(initial=0))
+    span = int(keys.max(initial=0)) - low + 1
+    if span > MOST_SPARSE * len(keys):
+        found, number = np.unique(keys, return_inverse=True)
+        return found, number
+    at = keys - low
+    is_there = np.zeros(span, dtype=bool)
+    is_there[at] = True
+    number = (np.cumsum(is_there) - 1)[at]
+    return np.flatnonzero(is_there) + low, number
 
 
 def dot(one: Floats, other: Floats) -> Floats:

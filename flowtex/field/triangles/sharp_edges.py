@@ -13,7 +13,7 @@ import numpy as np
 import scipy
 
 from flowtex._util.array_types import Bools, Floats, Indices
-from flowtex._util.arrays import bounds, dot, norm
+from flowtex._util.arrays import bounds, dot, norm, row_blocks
 from flowtex.field.triangles.triangle_nodes import (
     neighbours,
     nodal_sums,
@@ -73,7 +73,9 @@ class _Edges(NamedTuple):
         return np.asarray(result)
 
 
-def split_nodes(points: Floats, triangles: Indices) -> tuple[Indices, Indices]:
+def split_nodes(
+    points: Floats, triangles: Indices, uneven: Bools | None = None
+) -> tuple[Indices, Indices]:
     """Give each face its own nodes at sharp edges.
 
     Parameters
@@ -82,6 +84,8 @@ def split_nodes(points: Floats, triangles: Indices) -> tuple[Indices, Indices]:
         Positions of the nodes, (N, 3).
     triangles
         Nodes at the corners of triangles, (M, 3).
+    uneven
+        The nodes (N,) of :func:`uneven_nodes`, if they are known.
 
     Returns
     -------
@@ -91,7 +95,9 @@ def split_nodes(points: Floats, triangles: Indices) -> tuple[Indices, Indices]:
         Which node each of them was, (n,); the first N keep their numbers.
     """
     count = len(points)
-    bent = _bent_nodes(points, triangles)
+    if uneven is None:
+        uneven = uneven_nodes(triangles, count)
+    bent = uneven | _turned_nodes(points, triangles)
     around = np.flatnonzero(bent[triangles].any(axis=1))
     near = triangles[around]
     edges = _Edges.of(near, neighbours(points, near))
@@ -136,15 +142,16 @@ def _in_noise(nodes: Indices, ends: Indices, count: int) -> Bools:
     return np.asarray(is_noise[chain])
 
 
-def _bent_nodes(points: Floats, triangles: Indices) -> Bools:
-    """Return the nodes (N,) at which an edge may be sharp."""
+def _turned_nodes(points: Floats, triangles: Indices) -> Bools:
+    """Return the nodes (N,) with a triangle that is turned far from their mean normal."""
     crosses = triangle_normals(points, triangles)
     normals = nodal_sums(triangles, crosses, len(points))
-    size = norm(normals)
-    least = SHARP_HALF * norm(crosses)
-    bent = uneven_nodes(triangles, len(points))
-    for nodes in triangles.T:
-        # A triangle that is turned far from the mean at its corner.
-        turned = dot(crosses, normals.take(nodes, axis=0)) <= least * size.take(nodes)
-        bent[nodes[turned]] = True
-    return bent
+    # Divided by zero, a normal turns all of its triangles, as those of the other sign do.
+    normals /= np.maximum(norm(normals), np.finfo(float).tiny)[:, None]
+    result = np.zeros(len(points), dtype=bool)
+    for block in row_blocks(len(triangles), 1):
+        corners = triangles[block]
+        away = np.einsum("mkc,mc->mk", normals.take(corners, axis=0), crosses[block])
+        turned = away <= SHARP_HALF * norm(crosses[block])[:, None]
+        result[corners[turned]] = True
+    return result

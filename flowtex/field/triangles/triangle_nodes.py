@@ -271,15 +271,20 @@ def corner_ends(points: Floats, triangles: Indices) -> tuple[Floats, Floats]:
     return low, high
 
 
-def connected_parts(beside: Indices) -> Indices:
-    """Return the number of the connected part of each triangle, (M,), from neighbours (M, 3)."""
-    count = len(beside)
-    own = np.arange(count)[:, None]
-    ends = np.where(beside >= 0, beside, own).ravel()
-    begins = 3 * np.arange(count + 1)
-    graph = scipy.sparse.csr_array((np.ones(len(ends)), ends, begins), shape=(count, count))
+def connected_nodes(triangles: Indices, count: int) -> Indices:
+    """Return the number of the connected part of each node, (count,)."""
+    first, second, third = triangles.astype(_smallest_type(count)).T
+    links = np.concatenate([first, second]), np.concatenate([second, third])
+    graph = scipy.sparse.coo_array((np.ones(len(links[0])), links), shape=(count, count))
     parts = scipy.sparse.csgraph.connected_components(graph, directed=False)[1]
     return np.asarray(parts, np.intp)
+
+
+def _smallest_type(count: int) -> type[np.int32 | np.int64]:
+    """Return the smallest type of the numbers up to ``count``."""
+    if count < MOST_SMALL:
+        return np.int32
+    return np.int64
 
 
 def _sorting(numbers: Indices, count: int) -> Indices:
@@ -296,7 +301,7 @@ def _sorting(numbers: Indices, count: int) -> Indices:
 def neighbours(points: Floats, triangles: Indices) -> Indices:
     """Return the triangle across each edge, (M, 3), -1 at a border; of several the straightest."""
     count = int(triangles.max(initial=0)) + 1
-    small = triangles.astype(np.int32 if triangles.size < MOST_SMALL else np.int64)
+    small = triangles.astype(_smallest_type(triangles.size))
     begin = np.roll(small, -1, axis=1).ravel()
     end = np.roll(small, 1, axis=1).ravel()
     low = np.minimum(begin, end)
@@ -347,10 +352,9 @@ def _straightest(
         result[sides] = np.take_along_axis(sides, np.argmin(straight, axis=2), axis=1) // 3
 
 
-def face_alike(triangles: Indices) -> bool:
-    """Return whether all triangles face as their neighbours do."""
-    count = int(triangles.max(initial=0)) + 1
-    uneven = uneven_nodes(triangles, count)
+def face_alike(triangles: Indices, uneven: Bools) -> bool:
+    """Return whether all triangles face as their neighbours do, from :func:`uneven_nodes`."""
+    count = len(uneven)
     near = triangles[np.count_nonzero(uneven[triangles], axis=1) > 1]
     # Neighbours that face alike pass their common edge in opposite directions.
     ahead = np.roll(near, -1, axis=1)

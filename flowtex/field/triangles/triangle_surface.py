@@ -28,6 +28,7 @@ from flowtex.field.triangles.triangle_nodes import (
     nodal_sums,
     same_places,
     triangle_normals,
+    uneven_nodes,
 )
 
 #: Greatest coordinate of a second corner, just below the next triangle's number.
@@ -110,27 +111,41 @@ class TriangleSurface(NodeSurface):
     @property
     def joined(self) -> Indices:
         """Nodes at the corners, (M, 3), the same ones for all faces at a sharp edge."""
-        return np.asarray(self.places[self.triangles])
+        places = self.places
+        if (places == np.arange(len(places))).all():
+            return self.triangles
+        return np.asarray(places[self.triangles])
+
+    @cached_property
+    def uneven(self) -> Bools:
+        """The :func:`uneven_nodes`, (N,), among the first nodes at all places."""
+        return uneven_nodes(self.joined, self.shape[1])
+
+    @cached_property
+    def faces_alike(self) -> bool:
+        """Whether all triangles face as their neighbours do."""
+        return face_alike(self.joined, self.uneven)
 
     @cached_property
     def flipped(self) -> Bools:
         """Triangles that face the other way than the first one of their part, (M,)."""
-        joined = self.joined
-        if face_alike(joined):
-            return np.zeros(len(joined), dtype=bool)
-        return flipped(joined, self.neighbours)
+        if self.faces_alike:
+            return np.zeros(len(self.triangles), dtype=bool)
+        return flipped(self.joined, self.neighbours)
 
     def with_faces(self) -> tuple[TriangleSurface, Indices]:
         """Return the surface with nodes for each face at sharp edges, and which each was, (n,)."""
         if self.frame is not None:
             return self, np.arange(self.shape[1])
         points = self.points[0]
-        triangles, origin = split_nodes(points, self.triangles)
+        triangles, origin = split_nodes(points, self.triangles, self.uneven)
         if len(origin) == len(points):
             return self, origin
         valid = self.valid[:, origin]
         surface = TriangleSurface(self.points[:, origin], triangles, valid, on_globe=self.on_globe)
         surface.__dict__["places"] = origin
+        new = np.zeros(len(origin) - len(points), dtype=bool)
+        surface.__dict__["uneven"] = np.append(self.uneven, new)
         return surface, origin
 
     @cached_property

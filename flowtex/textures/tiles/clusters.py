@@ -10,25 +10,27 @@ many faces meet there that they are smaller than the bin: then it becomes one no
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import Any
+from typing import Any, overload
 
 import numpy as np
-import scipy
 
 from flowtex._util.array_types import Bools, Floats, Indices
-from flowtex._util.arrays import dot, norm
+from flowtex._util.arrays import dot, norm, numbered
+from flowtex._util.forks import ProcessLock
 from flowtex.errors import FieldError
 from flowtex.field import FlowField
 from flowtex.field.steps import Steps, map_steps
 from flowtex.field.triangles.triangle_nodes import (
-    connected_parts,
+    connected_nodes,
     incidence,
     known_means,
     once,
     sums_at,
     triangle_normals,
+    uneven_nodes,
 )
 from flowtex.field.triangles.triangle_surface import TriangleSurface
 
@@ -121,10 +123,14 @@ class Clusters:
             part,
         )
 
-    def coarser(self) -> Clusters:
-        """Return the next level, without triangles if all are smaller than the bins."""
-        faces, edges = self._separate()
-        cluster, corners, cells, bins = self._faced(faces, edges)
+    def coarser(self, steps: int = 1) -> Clusters:
+        """Return a coarser level, without triangles if all are smaller than the bins.
+
+        It is the next one, or one farther by ``steps``, without those between.
+        """
+        boxes = self.boxes(steps)
+        faces, edges = self._separate(boxes)
+        cluster, corners, cells, bins = self._faced(boxes, faces, edges)
         count = len(bins)
         _, first, at = np.unique(bins, return_index=True, return_inverse=True)
         places = first[at]
@@ -133,7 +139,7 @@ class Clusters:
         sides = np.zeros(count)
         border = np.zeros(count, dtype=bool)
         part, edge, face = np.zeros((3, count), dtype=np.intp)
-        sides[cluster[kept]] = 2 * self.sides[kept]
+        sides[cluster[kept]] = 2.0**steps * self.sides[kept]
         border[cluster[kept]] = self.border[kept]
         part[cluster[kept]] = self.part[kept]
         edge[cluster[kept]] = edges[kept]
@@ -163,29 +169,30 @@ class Clusters:
             part=part,
         )
 
-    def _separate(self) -> tuple[Indices, Indices]:
+    def _separate(self, boxes: Indices) -> tuple[Indices, Indices]:
         """Return face and edge of each node, (n,), MERGED where a bin has too many faces."""
         if not self.face.any():
             return self.face, self.edge
-        bins = np.unique(self._boxes(), return_inverse=True)[1]
         count = int(self.face.max()) + 1
-        within = np.unique(bins * count + self.face) // count
-        is_crowded = (np.bincount(within) > MOST_FACES)[bins]
+        within = np.unique(boxes * count + self.face) // count
+        is_crowded = (np.bincount(within) > MOST_FACES)[boxes]
         # All nodes at a place have the same bin.
         face = np.where(is_crowded, MERGED, self.face)
         edge = np.where(is_crowded, MERGED, self.edge)
         return face, edge
 
-    def _faced(self, face: Indices, edge: Indices) -> tuple[Indices, Indices, Indices, Indices]:
+    def _faced(
+        self, boxes: Indices, face: Indices, edge: Indices
+    ) -> tuple[Indices, Indices, Indices, Indices]:
         """Return the nodes of the next level, with one for each face of a bin.
 
         These are the node for each one here, (n,), or -1; corners of triangles (m, 3) and their
         numbers here, (m,); and the bin of each node of the next level.
         """
-        together = self._compact(self._bins(edge), edge)[self.places]
+        together = self._compact(self._bins(boxes, edge), edge)[self.places]
         corners, cells = once(together[self.triangles])
         count = int(face.max(initial=0)) + 1
-        kinds, cluster = np.unique(together * count + face, return_inverse=True)
+        kinds, cluster = numbered(together * count + face)
         nodes = self.triangles[cells]
         # Which corner of the triangle became which one of the merged triangle.
         at = np.argmax(together[nodes][:, None] == corners[:, :, None], axis=2)
@@ -195,28 +202,34 @@ class Clusters:
         fresh = np.where(used, np.cumsum(used) - 1, -1)
         return fresh[cluster], fresh[corners], cells, kinds[used] // count
 
-    def _boxes(self) -> Indices:
-        """Return the number of the box of space of each node, (n,)."""
-        at = ((self.binned - self.binned.min(axis=0)) / self.sides[:, None]).astype(np.int64)
-        key = np.rint(np.log2(self.sides / self.sides.min())).astype(np.int64)
+    def boxes(self, steps: int) -> Indices:
+        """Return the number of the box of space of each node, (n,), from 0, for a coarser level."""
+        sides = 2.0 ** (steps - 1) * self.sides
+        lowest = self.binned.min(axis=0)
+        key = np.zeros(len(sides), dtype=np.int64)
+        if sides.min() < sides.max():
+            key = np.rint(np.log2(sides / sides.min())).astype(np.int64)
         for axis in range(3):
-            key = key * (int(at[:, axis].max()) + 1) + at[:, axis]
-        return np.asarray(key)
+            at = ((self.binned[:, axis] - lowest[axis]) / sides).astype(np.int64)
+            key *= int(at.max()) + 1
+            key += at
+        return numbered(key)[1]
 
-    def _bins(self, edge: Indices) -> Indices:
+    def _bins(self, boxes: Indices, edge: Indices) -> Indices:
         """Return the bin of each node, (n,), all of whose nodes face alike."""
         # Nodes that are not drawn are binned apart, and left out of the next level.
         drawn = np.zeros(len(self.places), dtype=bool)
         drawn[self.triangles] = True
-        key = 4 * self._boxes() + 2 * drawn + self.border
+        key = 4 * boxes + 2 * drawn + self.border
         for kind in (self.part, edge):
             if kind.any():
-                bins = np.unique(key, return_inverse=True)[1]
-                key = bins * (int(kind.max()) + 1) + kind
-        _, first, cluster = np.unique(key, return_index=True, return_inverse=True)
+                key = numbered(key)[1] * (int(kind.max()) + 1) + kind
+        kinds, cluster = numbered(key)
+        first = np.empty(len(kinds), dtype=np.intp)
+        first[cluster[::-1]] = np.arange(len(cluster))[::-1]
         away = dot(self.normals, self.normals[first][cluster]) < 0
         away &= _are_opposite(cluster, away, self.normals)[cluster]
-        return np.asarray(np.unique(2 * cluster + away, return_inverse=True)[1])
+        return numbered(2 * cluster + away)[1]
 
     def _compact(self, cluster: Indices, edge: Indices) -> Indices:
         """Return clusters (n,) in which each node belongs to the nearest one beside it."""
@@ -224,22 +237,26 @@ class Clusters:
         count = int(cluster.max()) + 1
         center = sums_at(cluster, points, count) / np.bincount(cluster)[:, None]
         normal = sums_at(cluster, self.normals, count)
-        away = points - center[cluster]
-        distances = np.einsum("nc,nc->n", away, away)
+
+        def gaps(node: Indices, number: Indices) -> Floats:
+            # Column by column, which is several times as fast.
+            along = zip(points.T, center.T, strict=True)
+            return np.asarray(sum((c[node] - middle[number]) ** 2 for c, middle in along))
+
         parts = []
+        first, second, third = cluster[self.triangles.T]
+        triangles = self.triangles[(first != second) | (first != third)]
         for k in range(3):
-            node = self.triangles[:, k - 1]
-            beside = self.triangles[:, k]
+            node = triangles[:, k - 1]
+            beside = triangles[:, k]
             candidate = cluster[beside]
             alike = self.border[node] == self.border[beside]
             alike &= edge[node] == edge[beside]
             other = np.flatnonzero((cluster[node] != candidate) & alike)
             node = node[other]
             candidate = candidate[other]
-            # Column by column, which is several times as fast.
-            along = zip(points.T, center.T, strict=True)
-            gap = sum((column[node] - middle[candidate]) ** 2 for column, middle in along)
-            nearer = np.flatnonzero(gap < distances[node])
+            gap = gaps(node, candidate)
+            nearer = np.flatnonzero(gap < gaps(node, cluster[node]))
             node = node[nearer]
             candidate = candidate[nearer]
             gap = gap[nearer]
@@ -252,15 +269,65 @@ class Clusters:
         return result
 
 
-def levels_of(field: FlowField, nodes: int) -> list[Clusters]:
-    """Return a field and its next levels; the last has at most this many nodes, if possible."""
-    levels = [Clusters.of(field)]
-    while levels[-1].field.shape[1] > nodes:
-        coarser = levels[-1].coarser()
-        if not 0 < coarser.field.shape[1] < MOST_LEFT * levels[-1].field.shape[1]:
+class Levels(Sequence[Clusters]):
+    """A field and its coarser levels; the last has at most ``nodes`` nodes, if possible.
+
+    The last two are made at once from the whole field, and the others when they are needed.
+    """
+
+    def __init__(self, field: FlowField, nodes: int) -> None:
+        finest = Clusters.of(field)
+        self._lock = ProcessLock()
+        self._made = {0: finest}
+        last = _steps_to(finest, nodes) - 1
+        while last > 0:
+            self._made[last] = finest.coarser(last)
+            if 0 < self._nodes(last) < MOST_LEFT**last * self._nodes(0):
+                break
+            del self._made[last]
+            last -= 1
+        self._last = max(last, 0)
+        while self._nodes(self._last) > nodes:
+            coarser = self._made[self._last].coarser()
+            if not 0 < coarser.field.shape[1] < MOST_LEFT * self._nodes(self._last):
+                break
+            self._last += 1
+            self._made[self._last] = coarser
+
+    def __len__(self) -> int:
+        return self._last + 1
+
+    @overload
+    def __getitem__(self, at: int) -> Clusters: ...
+
+    @overload
+    def __getitem__(self, at: slice) -> list[Clusters]: ...
+
+    def __getitem__(self, at: int | slice) -> Clusters | list[Clusters]:
+        numbers = range(len(self))[at]
+        if isinstance(numbers, range):
+            return [self[number] for number in numbers]
+        with self._lock:
+            if numbers not in self._made:
+                self._made[numbers] = self._made[0].coarser(numbers)
+            return self._made[numbers]
+
+    def _nodes(self, level: int) -> int:
+        return self._made[level].field.shape[1]
+
+
+def _steps_to(finest: Clusters, nodes: int) -> int:
+    """Return the least steps to a level with at most about this many nodes, 0 for the finest."""
+    count = finest.field.shape[1]
+    steps = 0
+    while count > nodes:
+        # Every step leaves at least about a quarter.
+        steps = max(steps + 1, int(np.ceil(np.log2(count / nodes) / 2)))
+        boxes = int(finest.boxes(steps).max()) + 1
+        if boxes >= MOST_LEFT * count:
             break
-        levels.append(coarser)
-    return levels
+        count = boxes
+    return steps
 
 
 def _are_opposite(bins: Indices, away: Bools, normals: Floats) -> Bools:
@@ -299,6 +366,11 @@ def _without_noise(
 
 def _border_nodes(surface: TriangleSurface) -> Bools:
     """Return which nodes are ends of a side without a drawn triangle beyond it, (N,)."""
+    if surface.faces_alike:
+        uneven = surface.uneven
+        if not surface.cells.all():
+            uneven = uneven_nodes(surface.joined[surface.cells], surface.shape[1])
+        return np.asarray(uneven[surface.places])
     triangles = surface.triangles
     beside = surface.neighbours
     open_sides = (beside < 0) | ~surface.cells[beside]
@@ -312,11 +384,13 @@ def _border_nodes(surface: TriangleSurface) -> Bools:
 
 def _parts_by_extent(surface: TriangleSurface, points: Floats) -> Indices:
     """Return the number of the connected part of each node, (N,), the smallest part first."""
-    part = np.zeros(len(points), dtype=np.intp)
-    part[surface.triangles] = connected_parts(surface.neighbours)[:, None]
-    if not part.any():
+    part = connected_nodes(surface.joined, len(points))[surface.places]
+    is_used = np.zeros(len(points), dtype=bool)
+    is_used[surface.triangles] = True
+    part[~is_used] = part[surface.triangles[0, 0]]
+    kinds, part = numbered(part)
+    if len(kinds) == 1:
         return part
-    part = np.unique(part, return_inverse=True)[1]
     order = np.argsort(part_extents(points, part))
     ranks: Indices = np.argsort(order)
     return ranks[part]
@@ -327,10 +401,7 @@ def _faces(surface: TriangleSurface) -> Indices:
     count = surface.shape[1]
     if (surface.places == np.arange(count)).all():
         return np.zeros(count, dtype=np.intp)
-    first, second, third = surface.triangles.T
-    links = np.concatenate([first, second]), np.concatenate([second, third])
-    graph = scipy.sparse.coo_array((np.ones(len(links[0]), bool), links), shape=(count, count))
-    return scipy.sparse.csgraph.connected_components(graph, directed=False)[1].astype(np.intp) + 1
+    return connected_nodes(surface.triangles, count) + 1
 
 
 def _edges(face: Indices, places: Indices) -> Indices:

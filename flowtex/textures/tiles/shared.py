@@ -10,7 +10,7 @@ import numpy as np
 from flowtex._util.cache import WeakCache
 from flowtex.field import FlowField
 from flowtex.textures.tiles import triangle_pyramid
-from flowtex.textures.tiles.clusters import levels_of
+from flowtex.textures.tiles.clusters import Levels
 from flowtex.textures.tiles.pyramid import Pyramid
 from flowtex.textures.tiles.triangle_pyramid import TrianglePyramid
 
@@ -55,7 +55,7 @@ def coarsened_field(field: FlowField, nodes: int) -> FlowField:
         has_levels = field.valid.size > triangle_pyramid.ROOT_NODES
         if has_levels:
             return field
-        return levels_of(field, nodes)[-1].field
+        return Levels(field, nodes)[-1].field
     share = np.sqrt(nodes / field.valid.size)
     rows, columns = (
         np.unique(np.rint(np.linspace(0, n - 1, max(int(n * share), min(n, 8)))).astype(int))

@@ -24,7 +24,7 @@ from flowtex.field import FlowField
 from flowtex.field.triangles.triangle_nodes import corner_ends
 from flowtex.textures.texture_set import TextureSet
 from flowtex.textures.tiles.blocks import enlarging, has_roughness, triangle_roughness
-from flowtex.textures.tiles.clusters import Clusters, levels_of, part_extents
+from flowtex.textures.tiles.clusters import Clusters, Levels, part_extents
 from flowtex.textures.tiles.pyramid import PATH_CELLS, Pyramid, TileKey
 from flowtex.textures.triangle_geometry import TriangleGeometry
 from flowtex.trace.store import SliceStore
@@ -61,7 +61,7 @@ class TrianglePyramid(Pyramid):
     def __init__(
         self, field: FlowField, parameter: str = "arclength", lines: str = "pathlines"
     ) -> None:
-        self._clusters = levels_of(field, ROOT_NODES)
+        self._clusters = Levels(field, ROOT_NODES)
         super().__init__(field, parameter, lines, depth=len(self._clusters) - 1)
         self._parts: dict[int, list[Indices]] = {}
 
@@ -244,10 +244,17 @@ class TrianglePyramid(Pyramid):
 
     @cached_property
     def _boxes(self) -> Boxes:
+        nodes = np.flatnonzero(self._used)
+        nodes = nodes[:: -(-len(nodes) // MOST_MEASURED)]
+        points = np.column_stack([self.field.points[0, nodes], self._clusters[0].part[nodes]])
+        return Boxes(points, self._steps(0))
+
+    @cached_property
+    def _used(self) -> Bools:
+        """Nodes of the field that are corners of drawn triangles, (N,)."""
         used = np.zeros(self.field.shape[1], dtype=bool)
         used[self._clusters[0].triangles] = True
-        points = self._points(0)[used]
-        return Boxes(points[:: -(-len(points) // MOST_MEASURED)], self._steps(0))
+        return used
 
     def _points(self, level: int) -> Floats:
         """Return positions of the nodes of a level, and their connected part, (N, 4)."""
@@ -275,26 +282,44 @@ class TrianglePyramid(Pyramid):
 
     @cached_property
     def _extents(self) -> tuple[Floats, Floats, Floats]:
-        """Corners of the content of the blocks of level 0, and the size of cells there."""
-        clusters = self._clusters[0]
-        parts = self._members(0)
+        """Corners of the content of the blocks of level 0, and the size of cells there.
+
+        They are those of the last level but one, and of what it omits, with a margin.
+        """
+        ends, sides = self._outlines
+        parts = self._boxes.members(*ends, self._steps(0))
         filled = np.array([len(part) > 0 for part in parts])
-        triangles = clusters.triangles[np.concatenate(parts)]
+        items = np.concatenate(parts)
         first = np.cumsum([0, *(len(part) for part in parts)])[:-1][filled]
         low, high = self._boxes.bounds(self._steps(0))
         inner = [np.full((len(low), 3), np.inf), np.full((len(low), 3), -np.inf)]
         size = np.zeros(len(parts))
         if len(first):
-            ends = corner_ends(clusters.field.points[0], triangles)
             for corner, end, reduce in zip(inner, ends, (np.minimum, np.maximum), strict=True):
-                corner[filled] = reduce.reduceat(end, first)
-            longest = np.maximum.reduce([clusters.sides[triangles[:, k]] for k in range(3)])
-            sides = np.split(longest, first[1:])
+                corner[filled] = reduce.reduceat(end[items, :3], first)
             # At the next level the size is twice as much, a share of the bins.
-            size[filled] = [BIN_SHARE / 2 * _most(part) for part in sides]
+            size[filled] = [BIN_SHARE / 2 * _most(p) for p in np.split(sides[items], first[1:])]
         low = low[:, :3]
         high = high[:, :3]
         return np.maximum(low, inner[0]), np.minimum(high, inner[1]), size
+
+    @property
+    def _outlines(self) -> tuple[tuple[Floats, Floats], Floats]:
+        """Corners (m, 4) of boxes that hold the surface, and sides of bins of level 0 there."""
+        level = max(self.depth - 1, 0)
+        clusters = self._clusters[level]
+        low, high = corner_ends(self._points(level), clusters.triangles)
+        sides = np.maximum.reduce([clusters.sides[clusters.triangles[:, k]] for k in range(3)])
+        if level == 0:
+            return (low, high), sides
+        # Parts smaller than the bins of that level have no triangles there.
+        lost = np.flatnonzero(self._used & (clusters.number < 0))
+        finest = self._clusters[0]
+        places = np.column_stack([self.field.points[0, lost], finest.part[lost]])
+        # Nodes of a level lie in bins of half its sides.
+        margin = np.append(sides / 2, finest.sides[lost])[:, None] * [1.0, 1.0, 1.0, 0.0]
+        ends = np.concatenate([low, places]) - margin, np.concatenate([high, places]) + margin
+        return ends, np.append(sides / 2**level, finest.sides[lost])
 
     def _stretch(self, level: int, nodes: Indices) -> float:
         """Return the length of the paths of some nodes relative to even paths."""

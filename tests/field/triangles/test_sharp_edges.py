@@ -15,7 +15,7 @@ from flowtex._util.array_types import Floats, Indices
 from flowtex.field.quantities import PointValues
 from flowtex.field.triangles.sharp_edges import split_nodes
 from flowtex.field.triangles.triangle_nodes import triangle_normals
-from flowtex.textures.tiles.clusters import levels_of
+from flowtex.textures.tiles.clusters import Levels
 from flowtex.trace.trace import paths
 
 pytestmark = pytest.mark.filterwarnings("ignore::flowtex.errors.Notice")
@@ -152,7 +152,7 @@ def test_faces_stay_apart_at_coarser_levels() -> None:
     points, triangles = cube(40)
     mixed, corners = soup(np.random.default_rng(2), (points, triangles))
     field = FlowField.from_triangles(mixed, corners, np.tile(WIND, (len(mixed), 1)))
-    levels = levels_of(field, 1000)
+    levels = Levels(field, 1000)
     assert len(levels) > 2
     for level in levels:
         surface = surface_of(level.field)

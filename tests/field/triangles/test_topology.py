@@ -9,7 +9,7 @@ import pytest
 from triangle_meshes import random_plane, soup, sphere
 
 from flowtex.field.triangles.triangle_nodes import (
-    connected_parts,
+    connected_nodes,
     flipped,
     merged_nodes,
     neighbours,
@@ -75,10 +75,10 @@ def test_where_three_meet_the_straight_one_is_beside(order: tuple[int, int, int]
     assert order.index(2) not in beside[[one, other]]
 
 
-def test_sheets_that_share_an_edge_are_one_part_in_any_order() -> None:
-    points = np.array([[0, 0, 0], [1, 0, 0], [0.5, 1, 0], [0.5, -1, 0], [0.5, 0, 1], [9, 9, 9]])
-    sheets = np.array([[0, 1, 4], [0, 1, 2], [1, 0, 3], [3, 4, 5]])
-    for order in permutations(range(4)):
-        part = connected_parts(neighbours(points, sheets[list(order)]))
-        alone = order.index(3)
-        assert len(set(np.delete(part, alone))) == 1 and part[alone] not in np.delete(part, alone)
+def test_sheets_that_share_a_node_are_one_part() -> None:
+    sheets = np.array([[0, 1, 4], [0, 1, 2], [6, 7, 8], [1, 0, 3], [3, 4, 5]])
+    for order in permutations(range(5)):
+        part = connected_nodes(sheets[list(order)], 9)
+        assert len(set(part[:6])) == 1
+        assert len(set(part[6:])) == 1
+        assert part[0] != part[6]
