@@ -19,6 +19,12 @@ from flowtex.field.steps import Steps
 
 #: Below this ratio of squared area to squared lengths a cell counts as collapsed.
 COLLAPSED_AREA = 1e-10
+#: Height over a plane, as a share of the extent, up to which a surface is flat.
+FLAT = 1e-6
+#: Height of some nodes over their own plane from which on the surface is not flat.
+NEARLY_FLAT = 1e-3
+#: Most of these nodes.
+PLANE_SAMPLE = 10_000
 
 
 class NodeSurface:
@@ -104,10 +110,12 @@ class NodeSurface:
     def frame(self) -> Floats | None:
         """Two orthonormal rows that span the surface where it is flat, (2, 3), else ``None``."""
         nodes = self._nodes
-        offsets = nodes - self.center
-        offsets -= offsets.mean(axis=0)  # the middle of the box need not lie in the plane
-        _, _, basis = np.linalg.svd(offsets.T @ offsets)
-        if np.abs(offsets @ basis[2]).max() > 1e-6 * self.extent:
+        some = nodes[:: -(-len(nodes) // PLANE_SAMPLE)]
+        basis, height = _principal_axes(some - self.center)
+        if height > NEARLY_FLAT * self.extent:
+            return None
+        basis, height = _principal_axes(nodes - self.center)
+        if height > FLAT * self.extent:
             return None
         normal = basis[2]
         if np.abs(normal).max() > 1 - 1e-12:
@@ -122,6 +130,13 @@ class NodeSurface:
         nodes = self._nodes
         # Column by column, which needs no memory for the differences to the middle.
         return np.array([np.ptp(nodes @ axis) for axis in self.frame])
+
+
+def _principal_axes(offsets: Floats) -> tuple[Floats, float]:
+    """Return the axes of offsets (N, 3), the shortest last, and the greatest height along that."""
+    offsets = offsets - offsets.mean(axis=0)  # the middle of the box need not lie in the plane
+    _, _, basis = np.linalg.svd(offsets.T @ offsets)
+    return basis, float(np.abs(offsets @ basis[2]).max())
 
 
 @dataclass(frozen=True)

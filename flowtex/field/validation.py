@@ -258,7 +258,10 @@ def node_faults(p: Floats, ok: Bools) -> list[str]:
 
 def finite_nodes(a: Floats) -> Bools:
     """Return whether all components of (..., J, I, C) are finite at the nodes, (J, I)."""
-    return np.asarray(np.isfinite(a).all(axis=(*range(a.ndim - 3), -1)))
+    finite = np.isfinite(a)
+    if finite.all():
+        return np.ones(a.shape[-3:-1], dtype=bool)
+    return np.asarray(finite.all(axis=(*range(a.ndim - 3), -1)))
 
 
 def largest(a: Floats, where: Bools | bool = True) -> float:  # noqa: FBT001, FBT002

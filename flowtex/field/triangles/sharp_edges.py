@@ -13,7 +13,7 @@ import numpy as np
 import scipy
 
 from flowtex._util.array_types import Bools, Floats, Indices
-from flowtex._util.arrays import bounds, dot, norm, row_blocks
+from flowtex._util.arrays import bounds, dot, first_places, norm, numbered, row_blocks
 from flowtex.field.triangles.triangle_nodes import (
     neighbours,
     nodal_sums,
@@ -28,8 +28,11 @@ SHARP_EDGE = 0.82
 SHARP_HALF = np.sqrt((1 + SHARP_EDGE) / 2)
 #: Fewest faces around a node of noise, one more than around the corner of a box.
 NOISE_FACES = 4
-#: Most nodes with as many faces on a surface without noise, such as the tips of pyramids.
-MOST_TIPS = 10_000
+#: Most nodes with as many faces on a surface without noise, such as the tips of pyramids, as a
+#: share of all nodes.
+MOST_TIPS = 0.02
+#: Number up to which they are no noise: all nodes of an octahedron have four faces.
+FEWEST_TIPS = 500
 #: Share of such nodes among all that sharp edges connect, above which these are noise.
 TIP_SHARE = 0.05
 #: Fewest nodes that sharp edges connect, on a surface with noise.
@@ -53,14 +56,17 @@ class _Edges(NamedTuple):
         far = beside[near, corner]
         near_corners = (corner + np.array([[1], [2]])) % 3
         ends = triangles[near, near_corners]
-        far_corners = np.argmax(triangles[far] == ends[..., None], axis=-1)
+        first, second, _ = triangles.take(far, axis=0).T
+        far_corners = np.where(ends == first, 0, np.where(ends == second, 1, 2))
         return cls(near, far, ends, near_corners, far_corners)
 
-    def sharp(self, points: Floats, triangles: Indices) -> Bools:
-        """Return which are sharp, (E,)."""
-        crosses = triangle_normals(points, triangles)
+    def sharp(self, points: Floats, crosses: Floats) -> Bools:
+        """Return which are sharp, (E,), from the :func:`triangle_normals`."""
         area = norm(crosses)
-        cosine = dot(crosses[self.near], crosses[self.far])
+        cosine = np.empty(len(self.near))
+        for block in row_blocks(len(cosine), 1):
+            near = crosses.take(self.near[block], axis=0)
+            cosine[block] = dot(near, crosses.take(self.far[block], axis=0))
         # Two triangles that face alike pass their edge in opposite directions.
         alike = (self.far_corners[1] - self.far_corners[0]) % 3 == 2
         cosine = np.where(alike, cosine, -cosine)
@@ -74,7 +80,10 @@ class _Edges(NamedTuple):
 
 
 def split_nodes(
-    points: Floats, triangles: Indices, uneven: Bools | None = None
+    points: Floats,
+    triangles: Indices,
+    uneven: Bools | None = None,
+    crosses: Floats | None = None,
 ) -> tuple[Indices, Indices]:
     """Give each face its own nodes at sharp edges.
 
@@ -86,6 +95,8 @@ def split_nodes(
         Nodes at the corners of triangles, (M, 3).
     uneven
         The nodes (N,) of :func:`uneven_nodes`, if they are known.
+    crosses
+        The :func:`triangle_normals`, (M, 3), if they are known.
 
     Returns
     -------
@@ -97,28 +108,33 @@ def split_nodes(
     count = len(points)
     if uneven is None:
         uneven = uneven_nodes(triangles, count)
-    bent = uneven | _turned_nodes(points, triangles)
-    around = np.flatnonzero(bent[triangles].any(axis=1))
+    if crosses is None:
+        crosses = triangle_normals(points, triangles)
+    bent = uneven | _turned_nodes(triangles, crosses, count)
+    if not bent.any():
+        return triangles, np.arange(count)
+    around = np.flatnonzero(np.logical_or.reduce(bent.take(triangles.T)))
     near = triangles[around]
     edges = _Edges.of(near, neighbours(points, near))
-    sharp = edges.sharp(points, near)
+    sharp = edges.sharp(points, crosses[around])
     at_edge = np.zeros(count, dtype=bool)
     at_edge[edges.ends[:, sharp]] = True
-    loose = np.flatnonzero(at_edge[near])  # corners
+    is_loose = at_edge.take(near).ravel()
+    loose = np.flatnonzero(is_loose)  # corners
     if not len(loose):
         return triangles, np.arange(count)
+    rank = np.cumsum(is_loose) - 1
     joined = at_edge[edges.ends] & ~sharp
     corners = (3 * edges.near + edges.near_corners)[joined]
     beyond = (3 * edges.far + edges.far_corners)[joined]
-    links = np.searchsorted(loose, corners), np.searchsorted(loose, beyond)
+    links = rank[corners], rank[beyond]
     graph = scipy.sparse.coo_array(
         (np.ones(len(links[0]), bool), links), shape=(len(loose), len(loose))
     )
-    face = scipy.sparse.csgraph.connected_components(graph, directed=False)[1]
-    first = np.unique(face, return_index=True)[1]
-    nodes = near.ravel()[loose[first]]  # those of the faces
+    face = np.asarray(scipy.sparse.csgraph.connected_components(graph, directed=False)[1], np.intp)
+    nodes = near.ravel()[loose[first_places(face)]]  # those of the faces
     is_new = ~_in_noise(nodes, edges.ends[:, sharp], count)[nodes]
-    is_new[np.unique(nodes, return_index=True)[1]] = False
+    is_new[first_places(numbered(nodes)[1])] = False
     number = np.where(is_new, count - 1 + np.cumsum(is_new), nodes)
     near.ravel()[loose] = number[face]
     result = triangles.copy()
@@ -132,7 +148,7 @@ def _in_noise(nodes: Indices, ends: Indices, count: int) -> Bools:
     ``nodes`` are the nodes of all faces, (F,), and ``ends`` the nodes of sharp edges, (2, E).
     """
     is_tip = np.bincount(nodes, minlength=count) >= NOISE_FACES
-    if np.count_nonzero(is_tip) <= MOST_TIPS:
+    if np.count_nonzero(is_tip) <= max(FEWEST_TIPS, MOST_TIPS * count):
         return np.zeros(count, dtype=bool)
     graph = scipy.sparse.coo_array((np.ones(ends.shape[1], bool), ends), shape=(count, count))
     chain = scipy.sparse.csgraph.connected_components(graph, directed=False)[1]
@@ -142,13 +158,12 @@ def _in_noise(nodes: Indices, ends: Indices, count: int) -> Bools:
     return np.asarray(is_noise[chain])
 
 
-def _turned_nodes(points: Floats, triangles: Indices) -> Bools:
-    """Return the nodes (N,) with a triangle that is turned far from their mean normal."""
-    crosses = triangle_normals(points, triangles)
-    normals = nodal_sums(triangles, crosses, len(points))
+def _turned_nodes(triangles: Indices, crosses: Floats, count: int) -> Bools:
+    """Return the nodes (count,) with a triangle that is turned far from their mean normal."""
+    normals = nodal_sums(triangles, crosses, count)
     # Divided by zero, a normal turns all of its triangles, as those of the other sign do.
     normals /= np.maximum(norm(normals), np.finfo(float).tiny)[:, None]
-    result = np.zeros(len(points), dtype=bool)
+    result = np.zeros(count, dtype=bool)
     for block in row_blocks(len(triangles), 1):
         corners = triangles[block]
         away = np.einsum("mkc,mc->mk", normals.take(corners, axis=0), crosses[block])

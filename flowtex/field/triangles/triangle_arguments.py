@@ -19,8 +19,10 @@ from flowtex.field.triangles.triangle_nodes import (
     merged_nodes,
     needle_edges,
     repeated,
+    solid_normals,
     solid_triangles,
     sums_at,
+    uneven_nodes,
 )
 from flowtex.field.triangles.triangle_surface import TriangleSurface
 from flowtex.field.validation import (
@@ -76,18 +78,17 @@ def triangle_nodes(
     ok: Bools = finite_nodes(p[None])[0] & ~masked_points & finite_nodes(v)[0] & ~masked
     if mask is not None:
         ok = ok & mask
-    v = np.where(ok[:, None], v, np.nan)
+    if not ok.all():
+        v = np.where(ok[:, None], v, np.nan)
     raise_faults(range_faults(p[None], v, ok[None]))
     steps: Steps = v
     if isinstance(velocity, LazySteps):
         steps = velocity.map(partial(_row, ok))
     data = _rows(scalars, arrays, len(p))
-    drawn, pairs = _usable(p, corners.astype(np.intp, copy=False))
+    drawn, pairs, crosses = _usable(p, corners.astype(np.intp, copy=False))
     solid = _rows_of(corners, drawn)
     _check_any_usable(ok, solid)
-    # Unknown positions must not take part in computations.
-    p = np.where(finite_nodes(p[None])[0][:, None], p, np.mean(p[ok], axis=0))
-    placed = _placed(p, solid, pairs, ok, on_globe=on_globe)
+    placed = _placed(_known(p, ok), solid, crosses, pairs, ok, on_globe=on_globe)
     surface = placed.surface
     drawn = drawn[placed.kept]
     if not placed.unchanged:
@@ -109,9 +110,17 @@ def _corners_of(triangles: ArrayLike) -> AnyArray:
         ) from error
 
 
+def _known(p: Floats, ok: Bools) -> Floats:
+    """Return a copy of positions (N, 3); unknown ones must not take part in computations."""
+    finite = finite_nodes(p[None])[0]
+    if finite.all():
+        return p.copy()
+    return np.where(finite[:, None], p, np.mean(p[ok], axis=0))
+
+
 def _check_any_usable(ok: Bools, corners: Indices) -> None:
     """Check that some triangle (M, 3) has three usable nodes."""
-    if not (ok[corners].all(axis=1)).any():
+    if not np.logical_and.reduce(ok.take(corners.T)).any():
         raise FieldError(
             f"{int(ok.sum())} of {ok.size} nodes are usable, but no triangle has three of them; "
             "check the triangles and the mask"
@@ -171,11 +180,14 @@ def _row_means(step: Floats, summed: Callable[[Floats], Floats]) -> Floats:
     return known_means(step[0], summed)[None]
 
 
-def _placed(p: Floats, corners: Indices, pairs: Indices, ok: Bools, *, on_globe: bool) -> _Placed:
+def _placed(
+    p: Floats, corners: Indices, crosses: Floats, pairs: Indices, ok: Bools, *, on_globe: bool
+) -> _Placed:
     """Join given nodes (N,) at one place, and pairs of them, unless they belong to two faces."""
-    same = merged_nodes(p, corners, pairs)
+    uneven = uneven_nodes(corners, len(p))
+    same = merged_nodes(p, corners, uneven, pairs)
     is_joined = same != np.arange(len(p))
-    kept = ~is_joined[corners].any(axis=1)
+    kept = ~np.logical_or.reduce(is_joined.take(corners.T))
     kept[~kept] = solid_triangles(p, same[corners[~kept]])
     corners = _rows_of(corners, np.flatnonzero(kept))
     is_used = np.zeros(len(p), dtype=bool)
@@ -183,8 +195,15 @@ def _placed(p: Floats, corners: Indices, pairs: Indices, ok: Bools, *, on_globe:
     number = np.where(is_used, np.cumsum(is_used) - 1, -1)[same]
     given = np.flatnonzero(number >= 0)
     valid = np.bincount(number[given], ok[given]) > 0
-    joined = TriangleSurface(p[is_used][None], number[corners], valid[None], on_globe=on_globe)
+    if is_used.all():
+        joined = TriangleSurface(p[None], corners.copy(), valid[None], on_globe=on_globe)
+        joined.__dict__["uneven"] = uneven
+    else:
+        points = p[is_used][None]
+        joined = TriangleSurface(points, number[corners], valid[None], on_globe=on_globe)
     joined.__dict__["places"] = np.arange(joined.shape[1])
+    if kept.all() and not is_joined.any():
+        joined.__dict__["own_crosses"] = crosses
     surface, origin = joined.with_faces()
     unchanged = bool(is_used.all()) and surface is joined
     if surface is joined:
@@ -205,6 +224,8 @@ def _as_row(step: Floats, at: Any = slice(None)) -> Floats:
 
 def _at_rest(unused: Bools, step: Floats) -> Floats:
     """Return a step, (1, N, 3), that is zero at nodes that are not in use."""
+    if not unused.any():
+        return step.copy()
     return np.where(unused[:, None], 0.0, step)
 
 
@@ -243,15 +264,18 @@ def _faults(
     return faults + nodal_faults((count,), v, steps, times, valid, scalars)
 
 
-def _usable(p: Floats, corners: Indices) -> tuple[Indices, Indices]:
-    """Return numbers of solid triangles, each once, and pairs of nodes (n, 2) that needles join."""
+def _usable(p: Floats, corners: Indices) -> tuple[Indices, Indices, Floats]:
+    """Return numbers (m,) of solid triangles, each once, and normals (m, 3) as long as their areas.
+
+    Between them are the pairs of nodes (n, 2) that needles join.
+    """
     finite = finite_nodes(p[None])[0]
     if finite.all():
         placed = np.ones(len(corners), bool)
     else:
         placed = finite[corners].all(axis=1)
     good = placed.copy()
-    good[placed] = solid_triangles(p, corners[placed])
+    good[placed], crosses = solid_normals(p, _rows_of(corners, np.flatnonzero(placed)))
     once = ~repeated(corners)
     flat = corners[placed & ~good]
     is_point = needle_edges(p, flat)
@@ -265,4 +289,7 @@ def _usable(p: Floats, corners: Indices) -> tuple[Indices, Indices]:
             reasons.append(f"{np.count_nonzero(is_left_out):,} {reason}")
     if reasons:
         notify(f"triangles are left out: {', '.join(reasons)}", UserWarning)
-    return np.flatnonzero(good & once), edges_of(flat)[is_point]
+    usable = good & once
+    if not usable.all():
+        crosses = crosses[usable[placed]]
+    return np.flatnonzero(usable), edges_of(flat)[is_point], crosses

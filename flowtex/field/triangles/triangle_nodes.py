@@ -31,15 +31,22 @@ SHARP = 0.86
 
 def solid_triangles(p: Floats, corners: Indices) -> Bools:
     """Return which triangles (M,) have an area."""
-    result = np.empty(len(corners), dtype=bool)
+    return solid_normals(p, corners)[0]
+
+
+def solid_normals(p: Floats, corners: Indices) -> tuple[Bools, Floats]:
+    """Return which triangles (M,) have an area, and :func:`triangle_normals`."""
+    solid = np.empty(len(corners), dtype=bool)
+    normals = np.empty((len(corners), 3))
     for block in row_blocks(len(corners), 1):
         a, b, c = p.take(corners[block].T, axis=0)
         one = b - a
         two = c - a
         three = c - b
         longest = np.maximum(np.maximum(dot(one, one), dot(two, two)), dot(three, three))
-        result[block] = norm(cross(one, two)) > FLAT_TRIANGLE * longest
-    return result
+        normals[block] = across = cross(one, two)
+        solid[block] = norm(across) > FLAT_TRIANGLE * longest
+    return solid, normals
 
 
 def nodal_means(
@@ -62,7 +69,7 @@ def nodal_means(
     return map_steps(values, partial(known_means, summed=summed))
 
 
-def incidence(triangles: Indices, count: int, weights: Floats | None = None) -> Any:
+def incidence(triangles: Indices, count: int, weights: Floats | Indices | None = None) -> Any:
     """Return a sparse matrix (M, count) with weights (M, K), or ones, at the corners of faces.
 
     Multiply it by values at nodes to sum them at faces, and its transpose by values at faces to sum
@@ -98,8 +105,11 @@ def nodal_sums(
 def known_means(values: Floats, summed: Callable[[Floats], Floats]) -> Floats:
     """Return means (n, ...) of finite values (N, ...), which are summed; NaN without any."""
     flat = values.reshape(len(values), -1)
-    finite = np.asarray(np.isfinite(flat).all(axis=1, keepdims=True))
-    sums = summed(np.where(finite, flat, 0.0))
+    finite = np.ones((len(flat), 1), dtype=bool)
+    if not np.isfinite(flat).all():
+        finite = np.isfinite(flat).all(axis=1, keepdims=True)
+        flat = np.where(finite, flat, 0.0)
+    sums = summed(flat)
     total = summed(finite.astype(np.float64))
     means = np.divide(sums, total, out=np.full_like(sums, np.nan), where=total > 0)
     return np.asarray(means.reshape(-1, *values.shape[1:]))
@@ -175,21 +185,29 @@ def uneven_nodes(triangles: Indices, count: int) -> Bools:
     Around any other node, each neighbour follows in one triangle and precedes in another one.
     """
     random = np.random.default_rng(0).integers(0, MOST_RANDOM, count)
-    total = np.zeros(count, dtype=np.int64)
-    ahead = random[triangles.T]
-    for corner, nodes in enumerate(triangles.T):
-        np.add.at(total, nodes, ahead[corner - 2] - ahead[corner - 1])
+    numbers = random.take(triangles)
+    turns = np.empty_like(numbers)
+    for corner in range(3):
+        np.subtract(numbers[:, corner - 2], numbers[:, corner - 1], out=turns[:, corner])
+    total = incidence(triangles, count, turns).T @ np.ones(len(triangles), dtype=np.int64)
     return np.asarray(total != 0)
 
 
-def _border_nodes(triangles: Indices) -> Indices:
-    """Return the nodes at sides that belong to one triangle."""
-    uneven = uneven_nodes(triangles, int(triangles.max(initial=0)) + 1)
-    triangles = triangles[np.count_nonzero(uneven[triangles], axis=1) > 1]
+def _border_nodes(triangles: Indices, uneven: Bools) -> Indices:
+    """Return the nodes at sides that belong to one triangle, from :func:`uneven_nodes`."""
+    triangles = _with_two(triangles, uneven)
     keys = np.sort(_edge_keys(triangles))
     differs = np.diff(keys, prepend=-1, append=-1) != 0
     lone = keys[differs[1:] & differs[:-1]]
     return np.unique(np.divmod(lone, int(triangles.max(initial=0)) + 1))
+
+
+def _with_two(triangles: Indices, nodes: Bools) -> Indices:
+    """Return the triangles (m, 3) with two or three of some nodes (N,)."""
+    if not nodes.any():
+        return triangles[:0]
+    a, b, c = nodes.take(triangles.T)
+    return np.asarray(triangles[(a & b) | (b & c) | (a & c)])
 
 
 def _twins(points: Floats, nodes: Indices) -> Indices:
@@ -201,16 +219,21 @@ def _twins(points: Floats, nodes: Indices) -> Indices:
 def same_places(points: Floats, triangles: Indices) -> Indices:
     """Return the first node on a border at the exact place of each node, (N,)."""
     result = np.arange(len(points))
-    border = _border_nodes(triangles)
+    border = _border_nodes(triangles, uneven_nodes(triangles, len(points)))
     if len(border):
         result[border] = _twins(points, border)
     return result
 
 
-def merged_nodes(points: Floats, triangles: Indices, joined: Indices | tuple[()] = ()) -> Indices:
-    """Return for each node (N,) the first at its place; pairs that are ``joined`` are one."""
+def merged_nodes(
+    points: Floats, triangles: Indices, uneven: Bools, joined: Indices | tuple[()] = ()
+) -> Indices:
+    """Return for each node (N,) the first at its place, from the nodes of :func:`uneven_nodes`.
+
+    Pairs of nodes (n, 2) that are ``joined`` are one.
+    """
     count = len(points)
-    border = _border_nodes(triangles)
+    border = _border_nodes(triangles, uneven)
     pairs = np.reshape(np.asarray(joined, dtype=np.intp), (-1, 2))
     if len(border):
         near = SAME_NODE_SHARE * float(np.ptp(points[border], axis=0).max(initial=0.0))
@@ -355,7 +378,7 @@ def _straightest(
 def face_alike(triangles: Indices, uneven: Bools) -> bool:
     """Return whether all triangles face as their neighbours do, from :func:`uneven_nodes`."""
     count = len(uneven)
-    near = triangles[np.count_nonzero(uneven[triangles], axis=1) > 1]
+    near = _with_two(triangles, uneven)
     # Neighbours that face alike pass their common edge in opposite directions.
     ahead = np.roll(near, -1, axis=1)
     return not _has_equal((ahead * np.int64(count) + near).ravel())

@@ -111,10 +111,14 @@ class TriangleSurface(NodeSurface):
     @property
     def joined(self) -> Indices:
         """Nodes at the corners, (M, 3), the same ones for all faces at a sharp edge."""
-        places = self.places
-        if (places == np.arange(len(places))).all():
-            return self.triangles
-        return np.asarray(places[self.triangles])
+        if self.has_faces:
+            return np.asarray(self.places[self.triangles])
+        return self.triangles
+
+    @cached_property
+    def has_faces(self) -> bool:
+        """Whether some nodes lie at the same place, for different faces."""
+        return bool((self.places != np.arange(len(self.places))).any())
 
     @cached_property
     def uneven(self) -> Bools:
@@ -138,22 +142,29 @@ class TriangleSurface(NodeSurface):
         if self.frame is not None:
             return self, np.arange(self.shape[1])
         points = self.points[0]
-        triangles, origin = split_nodes(points, self.triangles, self.uneven)
+        triangles, origin = split_nodes(points, self.triangles, self.uneven, self.own_crosses)
         if len(origin) == len(points):
             return self, origin
         valid = self.valid[:, origin]
         surface = TriangleSurface(self.points[:, origin], triangles, valid, on_globe=self.on_globe)
         surface.__dict__["places"] = origin
         new = np.zeros(len(origin) - len(points), dtype=bool)
+        surface.__dict__["own_crosses"] = self.own_crosses
         surface.__dict__["uneven"] = np.append(self.uneven, new)
         return surface, origin
 
     @cached_property
     def crosses(self) -> Floats:
         """Normals of the triangles, (M, 3), as long as twice their areas; neighbours face alike."""
-        crosses = triangle_normals(self.points[0], self.triangles)
-        crosses[self.flipped] *= -1
+        crosses = self.own_crosses
+        if self.flipped.any():
+            crosses = np.where(self.flipped[:, None], -crosses, crosses)
         return crosses
+
+    @cached_property
+    def own_crosses(self) -> Floats:
+        """Normals of the triangles as their corners are ordered, (M, 3)."""
+        return triangle_normals(self.points[0], self.triangles)
 
     @cached_property
     def _plane_normal(self) -> Floats | None:
@@ -296,8 +307,8 @@ class TriangleSurface(NodeSurface):
 
     def normal_share(self, velocity: Floats) -> float:
         """Return the normal share of a velocity (1, N, 3), sampled at some of the triangles."""
-        corners = self.triangles[self.cells]
-        corners = corners[:: -(-len(corners) // MOST_MEASURED)]
+        drawn = self.drawn
+        corners = self.triangles[drawn[:: -(-len(drawn) // MOST_MEASURED)]]
         normal = triangle_normals(self.points[0], corners)
         flow = velocity[0, corners].mean(axis=1)
         out = dot(flow, normal) / norm(normal)

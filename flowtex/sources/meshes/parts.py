@@ -96,7 +96,7 @@ def time_steps(
 
 def is_reader(source: Any) -> bool:
     """Return whether this is one of PyVista's readers."""
-    if hasattr(type(source), "IsA"):  # of VTK: an attribute of a mesh loads all accessors
+    if _is_of_vtk(source):
         return False
     return hasattr(source, "read") and (hasattr(source, "time_values") or hasattr(source, "reader"))
 
@@ -110,7 +110,14 @@ def is_structured(mesh: Any) -> bool:
 
 def times_of(source: Any) -> list[float]:
     """Return the times of a reader; empty for a mesh, or without a series."""
+    if _is_of_vtk(source):
+        return []
     return [float(t) for t in getattr(source, "time_values", None) or []]
+
+
+def _is_of_vtk(source: Any) -> bool:
+    """Return whether this is a mesh, of which asking for an attribute loads all accessors."""
+    return hasattr(type(source), "IsA")
 
 
 def leaves(mesh: Any, name: str = "") -> Iterator[tuple[str, Any]]:
@@ -405,6 +412,8 @@ def aligned(step: TimeStep, first: TimeStep) -> TimeStep:
     """
     grid = step.grid
     before = first.grid
+    if grid is before:
+        return step
     if (grid.n_points, grid.n_cells) != (before.n_points, before.n_cells) or _equal(grid, before):
         return step
     near = SAME_NODE_SHARE * before.length

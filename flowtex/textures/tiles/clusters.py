@@ -18,7 +18,7 @@ from typing import Any, overload
 import numpy as np
 
 from flowtex._util.array_types import Bools, Floats, Indices
-from flowtex._util.arrays import dot, norm, numbered
+from flowtex._util.arrays import bounds, dot, first_places, norm, numbered
 from flowtex._util.forks import ProcessLock
 from flowtex.errors import FieldError
 from flowtex.field import FlowField
@@ -102,26 +102,21 @@ class Clusters:
             triangles = triangles[surface.cells]
             crosses = crosses[surface.cells]
         places = surface.places
-        around = incidence(places[triangles], field.shape[1])
+        joined = triangles
+        if surface.has_faces:
+            joined = places[triangles]
+        around = incidence(joined, field.shape[1])
         areas = norm(crosses)
-        sides = _sides(around, areas, surface.extent)[places]
+        sides = _sides(around, areas, surface.extent)
         binned, normals = _without_noise(around, field.points[0], crosses, areas)
         face = _faces(surface)
-        return cls(
-            field,
-            field,
-            triangles,
-            surface.drawn,
-            np.arange(field.shape[1]),
-            sides,
-            places,
-            face,
-            _edges(face, places),
-            border,
-            normals[places],
-            binned[places],
-            part,
-        )
+        if surface.has_faces:
+            sides, normals, binned = (values[places] for values in (sides, normals, binned))
+        number = np.arange(field.shape[1])
+        cells = surface.drawn
+        edge = _edges(face, places)
+        on_nodes = sides, places, face, edge, border, normals, binned, part
+        return cls(field, field, triangles, cells, number, *on_nodes)
 
     def coarser(self, steps: int = 1) -> Clusters:
         """Return a coarser level, without triangles if all are smaller than the bins.
@@ -205,7 +200,7 @@ class Clusters:
     def boxes(self, steps: int) -> Indices:
         """Return the number of the box of space of each node, (n,), from 0, for a coarser level."""
         sides = 2.0 ** (steps - 1) * self.sides
-        lowest = self.binned.min(axis=0)
+        lowest = bounds(self.binned)[0]
         key = np.zeros(len(sides), dtype=np.int64)
         if sides.min() < sides.max():
             key = np.rint(np.log2(sides / sides.min())).astype(np.int64)
@@ -224,10 +219,8 @@ class Clusters:
         for kind in (self.part, edge):
             if kind.any():
                 key = numbered(key)[1] * (int(kind.max()) + 1) + kind
-        kinds, cluster = numbered(key)
-        first = np.empty(len(kinds), dtype=np.intp)
-        first[cluster[::-1]] = np.arange(len(cluster))[::-1]
-        away = dot(self.normals, self.normals[first][cluster]) < 0
+        cluster = numbered(key)[1]
+        away = dot(self.normals, self.normals[first_places(cluster)][cluster]) < 0
         away &= _are_opposite(cluster, away, self.normals)[cluster]
         return numbered(2 * cluster + away)[1]
 
@@ -370,7 +363,9 @@ def _border_nodes(surface: TriangleSurface) -> Bools:
         uneven = surface.uneven
         if not surface.cells.all():
             uneven = uneven_nodes(surface.joined[surface.cells], surface.shape[1])
-        return np.asarray(uneven[surface.places])
+        if surface.has_faces:
+            uneven = uneven[surface.places]
+        return uneven
     triangles = surface.triangles
     beside = surface.neighbours
     open_sides = (beside < 0) | ~surface.cells[beside]
@@ -399,7 +394,7 @@ def _parts_by_extent(surface: TriangleSurface, points: Floats) -> Indices:
 def _faces(surface: TriangleSurface) -> Indices:
     """Return the part without sharp edges of each node, (N,), from 1 if there are several."""
     count = surface.shape[1]
-    if (surface.places == np.arange(count)).all():
+    if not surface.has_faces:
         return np.zeros(count, dtype=np.intp)
     return connected_nodes(surface.triangles, count) + 1
 
@@ -412,8 +407,14 @@ def _edges(face: Indices, places: Indices) -> Indices:
     most = face.copy()
     np.minimum.at(least, places, face)
     np.maximum.at(most, places, face)
-    kinds = np.stack([least, most, np.bincount(places, minlength=len(face))], axis=-1)[places]
-    return np.asarray(np.unique(kinds, axis=0, return_inverse=True)[1].ravel(), np.intp) + 1
+    count = np.bincount(places, minlength=len(face))[places]
+    shared = np.flatnonzero(count > 1)
+    at = places[shared]
+    kinds = np.stack([least[at], most[at], count[shared]], axis=-1)
+    result = face.copy()
+    between = np.unique(kinds, axis=0, return_inverse=True)[1].ravel()
+    result[shared] = between + int(face.max()) + 1
+    return result
 
 
 def _averaged(field: FlowField, number: Indices, places: Indices, triangles: Indices) -> FlowField:

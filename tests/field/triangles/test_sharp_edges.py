@@ -81,10 +81,7 @@ def test_smooth_surface_is_read_without_neighbours_of_triangles() -> None:
     assert "neighbours" not in surface.__dict__
 
 
-def test_noise_has_no_faces_and_a_box_beside_it_keeps_its_own(
-    rng: np.random.Generator, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr("flowtex.field.triangles.sharp_edges.MOST_TIPS", 500)
+def test_noise_has_no_faces_and_a_box_beside_it_keeps_its_own(rng: np.random.Generator) -> None:
     terrain = sheet(rng.normal(size=(60, 60)))
     box = cube(10)
     points, triangles = joined(terrain, (box[0] + [0, 0, 20], box[1]))

@@ -132,10 +132,7 @@ def open_sides(level: Clusters) -> int:
     return int((~level.border[ends].all(axis=1)).sum())
 
 
-def test_levels_of_rough_terrain_are_smooth_and_whole(
-    rng: np.random.Generator, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr("flowtex.field.triangles.sharp_edges.MOST_TIPS", 500)
+def test_levels_of_rough_terrain_are_smooth_and_whole(rng: np.random.Generator) -> None:
     side = 120
     points, triangles = sheet(rng.normal(size=(side, side)))
     levels = Levels(flow_on(points, triangles), 600)
@@ -148,10 +145,7 @@ def test_levels_of_rough_terrain_are_smooth_and_whole(
     assert area == pytest.approx((side - 1) ** 2, rel=0.02)
 
 
-def test_two_sides_of_a_rough_sheet_stay_apart(
-    rng: np.random.Generator, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr("flowtex.field.triangles.sharp_edges.MOST_TIPS", 500)
+def test_two_sides_of_a_rough_sheet_stay_apart(rng: np.random.Generator) -> None:
     heights = rng.normal(size=(60, 60))
     points, triangles = sheet(heights)
     # Two sides that are joined along one border only, closer to each other than the bins.
