@@ -214,16 +214,17 @@ def horizontal_dims(array: xr.DataArray) -> tuple[str, ...]:
 def marked_axes(array: xr.DataArray) -> dict[str, list[str]]:
     """Return the coordinates of the axes X, Y, Z and T, which are marked in all datasets."""
     axes: dict[str, list[str]] = {}
-    for name, coordinate in array.coords.items():
-        axes.setdefault(str(coordinate.attrs.get("axis", "")), []).append(str(name))
+    for name, variable in array.coords.variables.items():
+        axes.setdefault(str(variable.attrs.get("axis", "")), []).append(str(name))
     return axes
 
 
 def axis_kind(array: xr.DataArray, dim: str) -> str:
     """Return ``"time"``, ``"level"``, or the name of another axis."""
     axes = marked_axes(array)
-    if dim in array.coords:
-        named = array.coords[dim].attrs
+    variables = array.coords.variables
+    if dim in variables:
+        named = variables[dim].attrs
     else:
         named = {}
     by_name = TIMES.match(dim) and not {*axes.get("X", ()), *axes.get("Y", ())} & {dim}
@@ -234,7 +235,7 @@ def axis_kind(array: xr.DataArray, dim: str) -> str:
         return LEVEL
     on_axis = []
     for name in vertical:
-        if array.coords[name].dims == (dim,):
+        if variables[name].dims == (dim,):
             on_axis.append(name)
     if on_axis:
         return LEVEL
@@ -374,7 +375,7 @@ def axis_direction(array: xr.DataArray, dim: str) -> int:
 
 
 def _dates(array: xr.DataArray, dim: str) -> AnyArray | None:
-    for name, c in array.coords.items():
+    for name, c in array.coords.variables.items():
         # Other dates, such as those of forecasts, may run along the same axis.
         named = name == dim or c.attrs.get("standard_name") in ("time", None)
         if named and c.dims == (dim,) and is_dates(c):
@@ -387,7 +388,7 @@ def coordinate_of(array: xr.DataArray, dim: str) -> xr.DataArray | None:
     return next((c for name, c in array.coords.items() if name == dim), None)
 
 
-def is_dates(coordinate: xr.DataArray) -> bool:
+def is_dates(coordinate: xr.DataArray | xr.Variable) -> bool:
     """Return whether a coordinate has dates, of any calendar."""
     kind = coordinate.dtype.kind
     return kind == "M" or (

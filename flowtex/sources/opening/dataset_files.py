@@ -20,7 +20,6 @@ from flowtex.errors import FieldError, import_extra, import_package
 from flowtex.field import units
 from flowtex.sources.datasets import labels
 from flowtex.sources.datasets.axes import TIMES, Choice, as_slice, is_dates
-from flowtex.sources.datasets.levels import with_levels
 from flowtex.sources.datasets.select import find_pairs
 from flowtex.sources.inspection.inspect_file import NETCDF, inspect_file
 from flowtex.sources.models.conventions import with_mesh_axes
@@ -29,6 +28,7 @@ from flowtex.sources.models.image_velocimetry import with_image_units
 from flowtex.sources.models.sgrid import with_declared_axes
 from flowtex.sources.notices import NOTE, Record
 from flowtex.sources.opening import component_axes, flow_text, rasters, tables
+from flowtex.sources.opening.axis_marks import time_axis, with_axes
 from flowtex.sources.opening.column_values import plain_values
 
 if TYPE_CHECKING:
@@ -116,7 +116,7 @@ def as_datasets(data: Any, record: Record | None = None, choice: Choice | None =
     else:
         closers = ()
     result = [as_points(ds, choice, record) for ds in result]
-    known = Datasets(with_mesh_axes([_with_axes(ds) for ds in result]), closers, recognised=True)
+    known = Datasets(with_mesh_axes([with_axes(ds) for ds in result]), closers, recognised=True)
     known.used = choice.used
     return known
 
@@ -145,7 +145,7 @@ def _together(group: list[xr.Dataset], record: Record) -> list[xr.Dataset]:
     """Join datasets of the same variables: steps of one series, or regions beside each other."""
     if len(group) < 2 or not any(array.ndim > 1 for array in group[0].data_vars.values()):
         return group
-    name = _time_axis(group)
+    name = time_axis(group)
     times = [np.atleast_1d(ds[name].values) if name in ds else np.empty(0) for ds in group]
     if all(map(len, times)) and len({tuple(map(str, line)) for line in times}) == len(times):
         try:
@@ -294,37 +294,6 @@ def _dates_of(texts: list[str], *, digits: bool = False) -> AnyArray | None:
     return np.asarray(dates.tz_localize(None), dtype="datetime64[ns]")
 
 
-def _with_axes(ds: xr.Dataset) -> xr.Dataset:
-    import_extra("cf_xarray", "xarray")
-    ds = with_levels(ds)
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")
-        guessed = ds.cf.guess_coord_axis()
-        # Asked for often, and slowly found: each coordinate is marked with its axis.
-        axes = guessed.cf.axes
-        marks = {**axes, "Z": [*axes.get("Z", []), *guessed.cf.coordinates.get("vertical", [])]}
-        for axis, names in marks.items():
-            for name in names:
-                guessed[name].attrs.setdefault("axis", axis)
-    for name, c in guessed.coords.items():  # such as months, which are no times of a series
-        is_guess = "axis" not in ds[name].attrs and c.attrs.get("axis") == "T"
-        is_time = units.measures(str(c.attrs.get("units", "")), units.TIMES)
-        if is_guess and c.dtype.kind in "fiu" and not (is_time or TIMES.match(str(name))):
-            del c.attrs["axis"]
-        is_number = name in ("i", "j") and "axis" not in ds[name].attrs
-        if is_number and "axis" in c.attrs:  # which of them is across is a choice
-            del c.attrs["axis"]
-    return guessed
-
-
-def _time_axis(datasets: Sequence[xr.Dataset]) -> str:
-    """Return the name of the axis of time, ``"time"`` where none is recognised."""
-    axes = [_with_axes(ds).cf.axes.get("T", []) for ds in (datasets[0], datasets[-1])]
-    if axes[0] and axes[0] == axes[-1]:
-        return str(axes[0][0])
-    return "time"
-
-
 def joined(datasets: Sequence[xr.Dataset], record: Record | None = None) -> xr.Dataset:
     """Join steps of a series in the order of their times, on the positions that all have.
 
@@ -336,7 +305,7 @@ def joined(datasets: Sequence[xr.Dataset], record: Record | None = None) -> xr.D
     xarray = import_extra("xarray", "xarray")
     record = record or Record()
     datasets = [_decoded(ds) for ds in datasets]
-    name = _time_axis(datasets)
+    name = time_axis(datasets)
     dates = _dates_in_names([Path(str(ds.encoding.get("source", ""))) for ds in datasets])
     if dates is not None and name in datasets[0].dims and datasets[0][name].dtype.kind in "fiu":
         # The times are numbers without a unit.

@@ -13,7 +13,7 @@ import test_forms
 import test_supported
 import xarray as xr
 from cyclopts import App
-from form_table import FORMS, data_of, read
+from form_table import FORMS, data_of
 from supported import ROWS, shown
 
 from flowtex import FlowField
@@ -38,17 +38,19 @@ def noticed(data: Any, **options: Any) -> tuple[FlowField, list[Notice]]:
     return field, notices
 
 
+shell = App(result_action="return_value")
+
+
+@shell.default
+def options_of(*, flow: Annotated[FieldFlags | None, FLAT] = None) -> dict[str, Any]:
+    """Return the options that were typed."""
+    return arguments(flow)
+
+
 def typed_in_shell(text: str) -> dict[str, Any]:
     """Return the options of words that are typed in a shell."""
-    app = App()
-    found: list[dict[str, Any]] = []
-
-    @app.default
-    def command(*, flow: Annotated[FieldFlags | None, FLAT] = None) -> None:
-        found.append(arguments(flow))
-
-    app(shlex.split(text), result_action="return_value")
-    return found[0]
+    options: dict[str, Any] = shell(shlex.split(text))
+    return options
 
 
 def with_option(options: dict[str, Any], name: str, value: Any) -> dict[str, Any]:
@@ -87,9 +89,8 @@ def selects(field: FlowField, remedy: Remedy) -> bool:
     return True
 
 
-def check_notices(data: Any, options: dict[str, Any]) -> None:
-    """Type what each notice says, in Python and in a shell."""
-    _, notices = noticed(data, **options)
+def check_notices(data: Any, options: dict[str, Any], notices: list[Notice]) -> None:
+    """Type what each notice of some data says, in Python and in a shell."""
     texts = [str(notice) for notice in notices]
     assert len(set(texts)) == len(texts), texts
     for notice in notices:
@@ -109,10 +110,10 @@ def test_typed_text_of_forms_is_accepted(name: str, tmp_path: Path) -> None:
     form = FORMS[name]
     data, _ = data_of(form, tmp_path)
     try:
-        read(data, **form.options)
+        _, notices = noticed(data, **form.options)
     except FieldError:
         return
-    check_notices(data, form.options)
+    check_notices(data, form.options, notices)
 
 
 @pytest.mark.parametrize("row", ROWS, ids=lambda row: row.make.__name__)
@@ -123,7 +124,8 @@ def test_typed_text_of_supported_data_is_accepted(
         pytest.importorskip(row.needs.replace("-", "_"))
     monkeypatch.chdir(tmp_path)
     variables, _ = row.make(tmp_path)
-    check_notices(*shown(row.code, variables))
+    data, options = shown(row.code, variables)
+    check_notices(data, options, noticed(data, **options)[1])
 
 
 def box(**arrays: Any) -> Any:
@@ -216,7 +218,7 @@ def test_choice_is_reported_and_can_be_changed(name: str) -> None:
     _, notices = noticed(data)
     names = [remedy.name for notice in notices for remedy in notice.remedies]
     assert names == arguments_of_notices
-    check_notices(data, {})
+    check_notices(data, {}, notices)
 
 
 @pytest.mark.parametrize("names", [("a", "b"), ("i", "j"), ("j", "i"), ("row", "col")])
