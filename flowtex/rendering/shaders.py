@@ -26,6 +26,7 @@ _PACKAGE = Path(__file__).resolve().parents[1]
 _INCLUDE = re.compile(r"^[ \t]*//#include[ \t]+(\S+)[ \t]*$", re.MULTILINE)
 
 
+@cache
 def shader_folder(package: Path = _PACKAGE) -> Path:
     """Return the folder with the shaders: in an installed package, or in a checkout beside it.
 
@@ -55,8 +56,9 @@ def shader_names() -> tuple[str, ...]:
     )
 
 
+@cache
 def shader_source(name: str) -> str:
-    """Return the text of one shader, by its path in the folder of shaders.
+    """Return the text of one shader, by its path in the folder of shaders; it is read once.
 
     Raises
     ------
@@ -70,12 +72,6 @@ def shader_source(name: str) -> str:
         raise FileNotFoundError(
             f"the shader {name!r} does not exist; expected one of: {', '.join(shader_names())}"
         )
-    return _text_of(path)
-
-
-@cache
-def _text_of(path: Path) -> str:
-    """Return the text of a file, which is read once in a process."""
     return path.read_text(encoding="utf-8")
 
 

@@ -120,6 +120,8 @@ def _known(p: Floats, ok: Bools) -> Floats:
 
 def _check_any_usable(ok: Bools, corners: Indices) -> None:
     """Check that some triangle (M, 3) has three usable nodes."""
+    if ok.all() and len(corners):
+        return
     if not np.logical_and.reduce(ok.take(corners.T)).any():
         raise FieldError(
             f"{int(ok.sum())} of {ok.size} nodes are usable, but no triangle has three of them; "

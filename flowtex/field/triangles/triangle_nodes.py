@@ -69,7 +69,7 @@ def nodal_means(
     return map_steps(values, partial(known_means, summed=summed))
 
 
-def incidence(triangles: Indices, count: int, weights: Floats | Indices | None = None) -> Any:
+def incidence(triangles: Indices, count: int, weights: Floats | None = None) -> Any:
     """Return a sparse matrix (M, count) with weights (M, K), or ones, at the corners of faces.
 
     Multiply it by values at nodes to sum them at faces, and its transpose by values at faces to sum
@@ -185,11 +185,12 @@ def uneven_nodes(triangles: Indices, count: int) -> Bools:
     Around any other node, each neighbour follows in one triangle and precedes in another one.
     """
     random = np.random.default_rng(0).integers(0, MOST_RANDOM, count)
-    numbers = random.take(triangles)
-    turns = np.empty_like(numbers)
-    for corner in range(3):
-        np.subtract(numbers[:, corner - 2], numbers[:, corner - 1], out=turns[:, corner])
-    total = incidence(triangles, count, turns).T @ np.ones(len(triangles), dtype=np.int64)
+    total = np.zeros(count, dtype=np.int64)
+    for block in row_blocks(len(triangles), 1):
+        nodes = triangles[block].T.ravel()
+        numbers = random.take(nodes).reshape(3, -1)
+        turns = numbers[[1, 2, 0]] - numbers[[2, 0, 1]]
+        np.add.at(total, nodes, turns.ravel())
     return np.asarray(total != 0)
 
 
@@ -296,11 +297,21 @@ def corner_ends(points: Floats, triangles: Indices) -> tuple[Floats, Floats]:
 
 def connected_nodes(triangles: Indices, count: int) -> Indices:
     """Return the number of the connected part of each node, (count,)."""
-    first, second, third = triangles.astype(_smallest_type(count)).T
-    links = np.concatenate([first, second]), np.concatenate([second, third])
-    graph = scipy.sparse.coo_array((np.ones(len(links[0])), links), shape=(count, count))
-    parts = scipy.sparse.csgraph.connected_components(graph, directed=False)[1]
-    return np.asarray(parts, np.intp)
+    triangles = triangles.astype(_smallest_type(count))
+    part = _components(triangles[:, 0], triangles[:, 1], count)
+    # One side of every triangle connects nearly all.
+    first, _, third = part.take(triangles.T)
+    apart = first != third
+    if apart.any():
+        part = _components(first[apart], third[apart], int(part.max()) + 1)[part]
+    return part
+
+
+def _components(begins: Indices, ends: Indices, count: int) -> Indices:
+    """Return the number of the connected part of each of ``count`` items, from links (n,)."""
+    links = np.ones(len(begins), bool), (begins, ends)
+    graph = scipy.sparse.coo_array(links, shape=(count, count))
+    return np.asarray(scipy.sparse.csgraph.connected_components(graph, directed=False)[1], np.intp)
 
 
 def _smallest_type(count: int) -> type[np.int32 | np.int64]:

@@ -123,9 +123,8 @@ class Clusters:
 
         It is the next one, or one farther by ``steps``, without those between.
         """
-        boxes = self.boxes(steps)
-        faces, edges = self._separate(boxes)
-        cluster, corners, cells, bins = self._faced(boxes, faces, edges)
+        faces, edges, bins = self._binned(steps)
+        cluster, corners, cells, bins = self._faced(bins, faces)
         count = len(bins)
         _, first, at = np.unique(bins, return_index=True, return_inverse=True)
         places = first[at]
@@ -164,6 +163,15 @@ class Clusters:
             part=part,
         )
 
+    def _binned(self, steps: int) -> tuple[Indices, Indices, Indices]:
+        """Return face, edge, and bin of each node, (n,) each, for a coarser level."""
+        boxes = self.boxes(steps)
+        faces, edges = self._separate(boxes)
+        bins = self._bins(boxes, edges)
+        if steps == 1:
+            bins = self._compact(bins, edges)
+        return faces, edges, bins
+
     def _separate(self, boxes: Indices) -> tuple[Indices, Indices]:
         """Return face and edge of each node, (n,), MERGED where a bin has too many faces."""
         if not self.face.any():
@@ -176,15 +184,13 @@ class Clusters:
         edge = np.where(is_crowded, MERGED, self.edge)
         return face, edge
 
-    def _faced(
-        self, boxes: Indices, face: Indices, edge: Indices
-    ) -> tuple[Indices, Indices, Indices, Indices]:
+    def _faced(self, bins: Indices, face: Indices) -> tuple[Indices, Indices, Indices, Indices]:
         """Return the nodes of the next level, with one for each face of a bin.
 
         These are the node for each one here, (n,), or -1; corners of triangles (m, 3) and their
         numbers here, (m,); and the bin of each node of the next level.
         """
-        together = self._compact(self._bins(boxes, edge), edge)[self.places]
+        together = bins[self.places]
         corners, cells = once(together[self.triangles])
         count = int(face.max(initial=0)) + 1
         kinds, cluster = numbered(together * count + face)
