@@ -110,7 +110,7 @@ def _packed(array: AnyArray) -> tuple[Header, bytes]:
     choices = product(range(MOST_DIFFERENCES + 1), repeat=2)
     # Differences of the first rows are no differences, of which a sample has too many.
     first = min(MOST_DIFFERENCES, len(sample) - 1)
-    best = min(choices, key=lambda orders: len(zlib.compress(_planes(sample, orders, first))))
+    best = min(choices, key=lambda orders: len(zlib.compress(_planes(sample, orders, first), 1)))
     return {"differences": list(best), "scale": scale}, _planes(numbers, best)
 
 

@@ -281,14 +281,14 @@ class Levels(Sequence[Clusters]):
         last = _steps_to(finest, nodes) - 1
         while last > 0:
             self._made[last] = finest.coarser(last)
-            if 0 < self._nodes(last) < MOST_LEFT**last * self._nodes(0):
+            if 0 < self.nodes(last) < MOST_LEFT**last * self.nodes(0):
                 break
             del self._made[last]
             last -= 1
         self._last = max(last, 0)
-        while self._nodes(self._last) > nodes:
+        while self.nodes(self._last) > nodes:
             coarser = self._made[self._last].coarser()
-            if not 0 < coarser.field.shape[1] < MOST_LEFT * self._nodes(self._last):
+            if not 0 < coarser.field.shape[1] < MOST_LEFT * self.nodes(self._last):
                 break
             self._last += 1
             self._made[self._last] = coarser
@@ -311,8 +311,14 @@ class Levels(Sequence[Clusters]):
                 self._made[numbers] = self._made[0].coarser(numbers)
             return self._made[numbers]
 
-    def _nodes(self, level: int) -> int:
-        return self._made[level].field.shape[1]
+    def nodes(self, level: int) -> int:
+        """Return the number of nodes of a level, about it where it is not yet made."""
+        if level in self._made:
+            return self._made[level].field.shape[1]
+        # By equal factors from the finest level to the next coarser one.
+        coarse = min(made for made in self._made if made > level)
+        factor = float(self.nodes(coarse) / self.nodes(0)) ** (1 / coarse)
+        return int(self.nodes(0) * factor**level)
 
 
 def _steps_to(finest: Clusters, nodes: int) -> int:

@@ -70,8 +70,8 @@ class TrianglePyramid(Pyramid):
         return self._clusters[level].field
 
     def shape(self, level: int) -> tuple[int, int]:
-        """Return the number of nodes (1, N) of a level."""
-        return self.at_level(level).shape
+        """Return the number of nodes (1, N) of a level, about it where it is not yet made."""
+        return 1, self._clusters.nodes(level)
 
     @property
     def blocks(self) -> tuple[int, int]:

@@ -210,9 +210,12 @@ def test_levels_between_are_made_when_they_are_needed(rng: np.random.Generator) 
     levels = Levels(flow_on(*random_plane(rng, 12000)), 200)
     assert len(levels) > 3
     made = vars(levels)["_made"]
+    expected = [levels.nodes(number) for number in range(len(levels))]
     assert 1 not in made
     assert levels[1] is levels[1] is made[1]
     counts = [level.field.shape[1] for level in levels]
+    assert counts == [levels.nodes(number) for number in range(len(levels))]
+    np.testing.assert_allclose(expected, counts, rtol=0.3)
     assert all(0.15 < after / before < 0.4 for before, after in itertools.pairwise(counts))
 
 
