@@ -87,7 +87,7 @@ def drawing_of(view: Any, camera: Any, size: tuple[int, int], name: str = "") ->
     from flowtex.rendering.tile_choice import finer_part
     from flowtex.rendering.uniforms import ViewState, uniforms
     from flowtex.textures.tiles.blocks import BLOCK_CELLS
-    from flowtex.textures.tiles.pyramid import TILE_BLOCKS
+    from flowtex.textures.tiles.grid_pyramid import TILE_BLOCKS
 
     whole, settings = replace(view.data(), traces=True), view.scene.settings
     header, pyramid = whole.header(settings), whole.pyramid

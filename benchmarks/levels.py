@@ -17,7 +17,7 @@ from rich.console import Console
 from rich.table import Table
 
 import flowtex
-from flowtex.textures.tiles.pyramid import Pyramid
+from flowtex.textures.tiles.grid_pyramid import GridPyramid
 from flowtex.trace.trace import paths, trace
 
 Floats = NDArray[np.float64]
@@ -55,7 +55,7 @@ def random_flow(size: int, shortest: float, steps: int, seed: int = 0) -> flowte
 
 def error(field: flowtex.FlowField, level: int, cells: float) -> Floats:
     """Distances, in texels of the level, at a lag of so many of its cells, (N,)."""
-    pyramid, size = Pyramid(field), 2**level
+    pyramid, size = GridPyramid(field), 2**level
     coarse = pyramid.at_level(level)
     lag = cells * size
     by_time = {"parameter": "time"}

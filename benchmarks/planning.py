@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from flowtex.pyramid.layout import TILE_CELLS
-from flowtex.textures.tiles.pyramid import ROOT_NODES
+from flowtex.textures.tiles.grid_levels import ROOT_NODES
 
 ROOT = Path(__file__).resolve().parents[1]
 RESULTS, PAGE = ROOT / "benchmarks" / "pyramid.json", ROOT / "docs" / "scale.md"

@@ -39,7 +39,7 @@ for name in ("ocean", "weather"):
     few = {dim: slice(None, None, 3) for dim in data.dims if dim != "level"}
     setattr(flowtex.examples, name, lambda data=data.isel(few): data)
 """
-SMALL_ROOTS = "from flowtex.textures.tiles import pyramid\npyramid.ROOT_NODES = 20_000"
+SMALL_ROOTS = "from flowtex.textures.tiles import grid_levels\ngrid_levels.ROOT_NODES = 20_000"
 
 
 def read(path: Path) -> Any:

@@ -58,7 +58,8 @@ from flowtex.pyramid.tasks import (
     mend,
 )
 from flowtex.settings import TABLE
-from flowtex.textures.tiles.pyramid import TileKey, level_lines, level_shape
+from flowtex.textures.tiles.grid_levels import level_lines, level_shape
+from flowtex.textures.tiles.pyramid import TileKey
 
 if TYPE_CHECKING:
     from zarr import Group

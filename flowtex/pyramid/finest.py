@@ -18,7 +18,8 @@ from flowtex.field.grids.grid_surface import GridSurface
 from flowtex.field.locate import EARTH, Locator
 from flowtex.field.steps import LazySteps
 from flowtex.pyramid.source import RegionSource
-from flowtex.textures.tiles.pyramid import Pyramid, level_lines
+from flowtex.textures.tiles.grid_levels import level_lines
+from flowtex.textures.tiles.grid_pyramid import GridPyramid
 
 LINES_AROUND = 6  #: Lines on each side of a place that are read.
 NEAR_BORDER = 1.5  #: Distance in cells from the border of what is read, below which it is moved.
@@ -30,7 +31,7 @@ class FinestOfLevels:
 
     def __init__(
         self,
-        pyramid: Pyramid,
+        pyramid: GridPyramid,
         coarse: FlowField,
         positions: Callable[..., tuple[Floats, Bools]],
         opened: Callable[[], FlowField],

@@ -52,7 +52,8 @@ from flowtex.field.steps import Nodes
 from flowtex.pyramid.places import FORMAT, DamageError, PyramidError
 from flowtex.pyramid.source import NodeSource, periods_of
 from flowtex.textures.tiles.blocks import BLOCK_CELLS
-from flowtex.textures.tiles.pyramid import TILE_BLOCKS, level_shape, root_level
+from flowtex.textures.tiles.grid_levels import level_shape, root_level
+from flowtex.textures.tiles.grid_pyramid import TILE_BLOCKS
 
 if TYPE_CHECKING:
     from zarr import Group

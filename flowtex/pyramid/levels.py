@@ -43,7 +43,8 @@ from flowtex.pyramid.places import (
 )
 from flowtex.rendering.webgl.protocol import file_infos
 from flowtex.sources.datasets.axes import as_slice
-from flowtex.textures.tiles.pyramid import TileKey, level_shape
+from flowtex.textures.tiles.grid_levels import level_shape
+from flowtex.textures.tiles.pyramid import TileKey
 
 if TYPE_CHECKING:
     from zarr import AsyncArray

@@ -38,7 +38,7 @@ from flowtex.sources.inspection.inspect_file import inspect_file
 from flowtex.sources.maps import Lines
 from flowtex.sources.opening.dataset_files import dataset_paths, is_dataset_file
 from flowtex.sources.read_files import errors_of, read_files
-from flowtex.textures.tiles.pyramid import Pyramid
+from flowtex.textures.tiles.grid_pyramid import GridPyramid
 from flowtex.textures.value_ranges import drawn_speeds, ends_of
 from flowtex.trace.store import chosen_lines, judged_lines
 
@@ -120,7 +120,7 @@ class FieldSource:
         values = {}
         for name, steps in typical.scalars.items():
             values[name] = np.asarray(steps)[:, field.valid]
-        values.setdefault("speed", drawn_speeds(typical, Pyramid(field).root))
+        values.setdefault("speed", drawn_speeds(typical, GridPyramid(field).root))
         return _whole_and_robust(values)
 
 

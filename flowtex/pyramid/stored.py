@@ -24,7 +24,9 @@ from flowtex.pyramid.levels import Levels
 from flowtex.pyramid.places import PyramidError, is_store, place_text
 from flowtex.pyramid.source import WHOLE_NODES, RegionSource, datasets_at, source_of
 from flowtex.textures.texture_set import TextureSet
-from flowtex.textures.tiles.pyramid import Pyramid, TileKey, averaged
+from flowtex.textures.tiles.grid_levels import averaged
+from flowtex.textures.tiles.grid_pyramid import GridPyramid
+from flowtex.textures.tiles.pyramid import Pyramid, TileKey
 from flowtex.textures.tiles.shared import attach_pyramid
 
 
@@ -112,7 +114,7 @@ def root_of(levels: Levels) -> FlowField:
     return pyramid.at_level(pyramid.depth)
 
 
-class StoredPyramid(Pyramid):
+class StoredPyramid(GridPyramid):
     """The levels of a pyramid in a store, whose ``field`` is the coarsest of them."""
 
     def __init__(

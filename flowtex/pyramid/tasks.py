@@ -55,7 +55,8 @@ from flowtex.rendering.webgl.client_data import ClientData, single, tile_parts
 from flowtex.rendering.webgl.protocol import Parts, parts_file
 from flowtex.rendering.webgl.velocity import can_trace
 from flowtex.textures.texture_set import TextureSet
-from flowtex.textures.tiles.pyramid import TileKey, averaged, beside, level_lines
+from flowtex.textures.tiles.grid_levels import averaged, beside, level_lines
+from flowtex.textures.tiles.pyramid import TileKey
 from flowtex.trace.store import SliceStore
 
 #: Entries of the slices that are the same in all tiles, and in the header of the page.

@@ -21,7 +21,8 @@ from flowtex._util.arrays import norm
 from flowtex.rendering.shaders import const
 from flowtex.rendering.tile_choice import TileView
 from flowtex.textures.geometry import SurfaceGeometry
-from flowtex.textures.tiles.pyramid import TILE_CELLS, Pyramid, TileKey
+from flowtex.textures.tiles.grid_pyramid import TILE_CELLS, GridPyramid
+from flowtex.textures.tiles.pyramid import TileKey
 from flowtex.textures.triangle_geometry import TriangleGeometry
 
 OCTAVE = float(np.sqrt(0.5))  #: Distance of seeds in an octave over that in the one before.
@@ -270,7 +271,7 @@ def vertex_data(
 
 
 def in_tile(
-    pyramid: Pyramid, key: TileKey, geometry: SurfaceGeometry, places: Floats
+    pyramid: GridPyramid, key: TileKey, geometry: SurfaceGeometry, places: Floats
 ) -> tuple[Bools, Indices, Floats]:
     """Return which places (n, 2) of a root lie in a tile, and the corners and places of cells."""
     lines = zip(pyramid.line_numbers(pyramid.depth), pyramid.line_numbers(key.level), strict=True)

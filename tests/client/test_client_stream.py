@@ -73,7 +73,7 @@ def stores(tmp_path_factory: pytest.TempPathFactory, small_tiles: None) -> Path:
     """Return a folder with a store of each flow."""
     folder = tmp_path_factory.mktemp("stores")
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("flowtex.textures.tiles.pyramid.ROOT_NODES", ROOT_NODES)
+        patch.setattr("flowtex.textures.tiles.grid_levels.ROOT_NODES", ROOT_NODES)
         for name, make in FLOWS.items():
             build(make(), folder / f"{name}.zarr", progress=False)
     return folder

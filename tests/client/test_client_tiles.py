@@ -36,8 +36,8 @@ CAMERAS = {"near": straight(10, (0.6, 0.2)), "tilted": TILTED}
 @pytest.fixture(autouse=True)
 def small_root(monkeypatch: pytest.MonkeyPatch, small_tiles: None) -> None:
     """Let a small field have four levels: tiles are made while the browser waits for them."""
-    monkeypatch.setattr("flowtex.textures.tiles.pyramid.ROOT_NODES", 625)
-    monkeypatch.setattr("flowtex.textures.tiles.pyramid.has_roughness", lambda field: False)
+    monkeypatch.setattr("flowtex.textures.tiles.grid_levels.ROOT_NODES", 625)
+    monkeypatch.setattr("flowtex.textures.tiles.grid_pyramid.has_roughness", lambda field: False)
     monkeypatch.setattr("flowtex.host.still.NODES", 600)
     monkeypatch.setattr("flowtex.host.export.PREVIEW", (24, 16))
 

@@ -260,7 +260,7 @@ def test_tiles_around_a_pole_are_those_of_numpy(
     browser: Browser, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Of the ring around it there are all lines where it is near, and a few elsewhere."""
-    monkeypatch.setattr("flowtex.textures.tiles.pyramid.ROOT_NODES", 2000)
+    monkeypatch.setattr("flowtex.textures.tiles.grid_levels.ROOT_NODES", 2000)
     field = globe(1.0, 0.4, 0.3, columns=601)
     view = web_views(field, Options.split(samples=9))[0]
     assert view.scene.pyramid is not None

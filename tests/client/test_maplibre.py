@@ -97,7 +97,7 @@ def server(tmp_path_factory: pytest.TempPathFactory, small_tiles: None) -> Itera
         pytest.skip(f"{MAPLIBRE} is missing: run sh tools/client.sh .venv/bin ready")
     folder = tmp_path_factory.mktemp("map")
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("flowtex.textures.tiles.pyramid.ROOT_NODES", 3000)
+        patch.setattr("flowtex.textures.tiles.grid_levels.ROOT_NODES", 3000)
         build(currents().isel(time=0), folder / "flow.zarr", projection="mercator", progress=False)
     flowtex.export(str(folder / "flow.zarr"), folder / "flow.json", store="./flow.zarr", **LOOK)
     series = currents(3).isel(lat=slice(None, None, 4), lon=slice(None, None, 4))

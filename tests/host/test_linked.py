@@ -24,7 +24,7 @@ BUCKET = "https://bucket.s3.eu-central-1.amazonaws.com/flow.zarr"
 
 @pytest.fixture(autouse=True)
 def _small_roots(monkeypatch: pytest.MonkeyPatch, small_tiles: None) -> None:
-    monkeypatch.setattr("flowtex.textures.tiles.pyramid.ROOT_NODES", 1250)
+    monkeypatch.setattr("flowtex.textures.tiles.grid_levels.ROOT_NODES", 1250)
     monkeypatch.setattr("flowtex.host.export.PREVIEW", (24, 16))
 
 
@@ -39,7 +39,7 @@ def flow(steps: int = 1) -> FlowField:
 def store(tmp_path_factory: pytest.TempPathFactory, small_tiles: None) -> Path:
     place = tmp_path_factory.mktemp("store") / "flow.zarr"
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("flowtex.textures.tiles.pyramid.ROOT_NODES", 1250)
+        patch.setattr("flowtex.textures.tiles.grid_levels.ROOT_NODES", 1250)
         build(flow(3), place, progress=False)
     return place
 

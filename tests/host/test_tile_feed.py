@@ -16,7 +16,7 @@ from waiting import PATIENCE_S
 from flowtex._util.progress import check
 from flowtex.host.flow_widget import FlowWidget
 from flowtex.textures.texture_set import TextureSet
-from flowtex.textures.tiles.pyramid import Pyramid
+from flowtex.textures.tiles.grid_pyramid import GridPyramid
 
 
 def swirl(times: int = 1) -> Any:
@@ -32,7 +32,7 @@ def swirl(times: int = 1) -> Any:
 
 @pytest.fixture
 def make(monkeypatch: pytest.MonkeyPatch, small_tiles: None) -> Iterator[Callable[..., Heard]]:
-    monkeypatch.setattr("flowtex.textures.tiles.pyramid.ROOT_NODES", 1250)
+    monkeypatch.setattr("flowtex.textures.tiles.grid_levels.ROOT_NODES", 1250)
     for name in ("COARSE_STEADY", "COARSE_VARYING"):
         monkeypatch.setattr(f"flowtex.host.feed.{name}", 400)
     made: list[FlowWidget] = []
@@ -92,7 +92,7 @@ def test_what_is_given_up_is_neither_made_nor_sent(
     client.load((1, 0, 1), 0)  # a client that has dropped it asks again
     assert client.order.count("tile/1/0/1/header") == 2
     began, go = threading.Event(), threading.Event()
-    textures = Pyramid.region
+    textures = GridPyramid.region
 
     def slow(*arguments: Any) -> Any:
         began.set()
@@ -100,7 +100,7 @@ def test_what_is_given_up_is_neither_made_nor_sent(
         check()
         return textures(*arguments)
 
-    monkeypatch.setattr(Pyramid, "region", slow)
+    monkeypatch.setattr(GridPyramid, "region", slow)
     client.ask("dropped", (1, 0, 0), 0)
     assert began.wait(PATIENCE_S)
     client.say(kind="drop", request="dropped")
@@ -144,7 +144,7 @@ def test_errors_are_told_to_who_asked(
         raise OSError(msg)
 
     with monkeypatch.context() as patch:
-        patch.setattr(Pyramid, "region", fail)
+        patch.setattr(GridPyramid, "region", fail)
         client.load((1, 0, 1), 0)
     assert "disk is gone" in capsys.readouterr().err
     client.load((1, 0, 1), 0)

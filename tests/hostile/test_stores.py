@@ -52,14 +52,14 @@ def flow() -> FlowField:
 
 @pytest.fixture(autouse=True)
 def _small_roots(monkeypatch: pytest.MonkeyPatch, small_tiles: None) -> None:
-    monkeypatch.setattr("flowtex.textures.tiles.pyramid.ROOT_NODES", ROOT_NODES)
+    monkeypatch.setattr("flowtex.textures.tiles.grid_levels.ROOT_NODES", ROOT_NODES)
 
 
 @pytest.fixture(scope="module")
 def whole(tmp_path_factory: pytest.TempPathFactory, small_tiles: None) -> Path:
     place = tmp_path_factory.mktemp("whole") / "flow.zarr"
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("flowtex.textures.tiles.pyramid.ROOT_NODES", ROOT_NODES)
+        patch.setattr("flowtex.textures.tiles.grid_levels.ROOT_NODES", ROOT_NODES)
         assert build(flow(), place, progress=False).depth == 1
     return place
 

@@ -113,7 +113,7 @@ def test_land_has_its_colour_or_none(plotter: Any) -> None:
 def test_islands_that_only_finer_levels_have_are_land(
     name: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("flowtex.textures.tiles.pyramid.ROOT_NODES", 300)
+    monkeypatch.setattr("flowtex.textures.tiles.grid_levels.ROOT_NODES", 300)
     shrink(monkeypatch.setattr)
     lon, lat = np.linspace(5, 20, 151), np.linspace(5, 15, 101)
     data = winds_on_lines(lon, lat)

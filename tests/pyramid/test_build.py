@@ -24,6 +24,7 @@ from flowtex.pyramid.levels import Levels
 from flowtex.pyramid.source import FieldSource
 from flowtex.pyramid.stored import StoredPyramid
 from flowtex.scene.scene import Scene
+from flowtex.textures.tiles.grid_pyramid import GridPyramid
 from flowtex.textures.tiles.pyramid import Pyramid, TileKey
 from flowtex.textures.tiles.shared import shared_pyramid
 from flowtex.trace.store import shared_store
@@ -33,7 +34,7 @@ zarr = pytest.importorskip("zarr")
 
 @pytest.fixture(autouse=True)
 def _small_roots(monkeypatch: pytest.MonkeyPatch, small_tiles: None) -> None:
-    monkeypatch.setattr("flowtex.textures.tiles.pyramid.ROOT_NODES", 1000)
+    monkeypatch.setattr("flowtex.textures.tiles.grid_levels.ROOT_NODES", 1000)
 
 
 def grid(rows: int, columns: int) -> tuple[Floats, Floats]:
@@ -147,7 +148,7 @@ def shards(store: Path) -> list[str]:
 def test_tiles_are_those_of_the_field_in_memory(stores: Stores, name: str) -> None:
     field = FIELDS[name]()
     there = stored(stores.get(name))
-    memory = Pyramid(field, "arclength", there.lines)
+    memory = GridPyramid(field, "arclength", there.lines)
     assert (there.depth, there.blocks) == (memory.depth, memory.blocks)
     nearly: dict[str, Any] = {"rtol": 2e-3, "atol": 2e-3}
     np.testing.assert_allclose(
@@ -255,7 +256,7 @@ def test_shards_of_land_are_there(tmp_path: Path, monkeypatch: pytest.MonkeyPatc
     store = tmp_path / "a.zarr"
     built = made(store, flow)
     assert made(store, flow).kept == built.made
-    there, memory = stored(store), Pyramid(flow, "arclength", lines_of(store))
+    there, memory = stored(store), GridPyramid(flow, "arclength", lines_of(store))
     np.testing.assert_array_equal(there.root.valid, memory.root.valid)
     tiles = [there.tile(key, [0]) for key in keys_of(memory)]
     assert [tile is None for tile in tiles] == [

@@ -20,14 +20,14 @@ from flowtex.host.view import web_views
 from flowtex.pyramid import build, layout
 from flowtex.rendering.webgl.client_data import tile_parts
 from flowtex.scene.options import Options
-from flowtex.textures.tiles.pyramid import Pyramid
+from flowtex.textures.tiles.grid_pyramid import GridPyramid
 
 zarr = pytest.importorskip("zarr")
 
 
 @pytest.fixture(autouse=True)
 def _small_roots(monkeypatch: pytest.MonkeyPatch, small_tiles: None) -> None:
-    monkeypatch.setattr("flowtex.textures.tiles.pyramid.ROOT_NODES", 1250)
+    monkeypatch.setattr("flowtex.textures.tiles.grid_levels.ROOT_NODES", 1250)
 
 
 def flat() -> FlowField:
@@ -100,7 +100,7 @@ def test_a_tile_of_which_nothing_is_drawn_says_so(tmp_path: Path) -> None:
     valid[:, 62:] = False
     field = replace(field, valid=valid, velocity=np.where(valid[..., None], field.velocity, 0.0))
     build(field, tmp_path / "a.zarr", progress=False)
-    pyramid = Pyramid(field)
+    pyramid = GridPyramid(field)
     group = zarr.open_group(tmp_path / "a.zarr", mode="r")
     empty = [key for key in pyramid.children(None) if pyramid.textures(key) is None]
     assert empty

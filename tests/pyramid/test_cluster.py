@@ -56,7 +56,7 @@ def flow(rows: int = 128, columns: int = 256) -> Any:
 def test_workers_build_what_threads_build_though_one_is_killed(
     tmp_path: Path, storage: ObjectStorage, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("flowtex.textures.tiles.pyramid.ROOT_NODES", ROOT_NODES)
+    monkeypatch.setattr("flowtex.textures.tiles.grid_levels.ROOT_NODES", ROOT_NODES)
     source, place = "s3://flows/source.zarr", "s3://flows/deep/flow.zarr"
     flow().to_zarr(store_at(source, read_only=False), consolidated=False)
     data = xr.open_zarr(store_at(source), consolidated=False)
@@ -112,9 +112,9 @@ def _pid() -> int:
 
 
 def _small_roots() -> None:
-    from flowtex.textures.tiles import pyramid
+    from flowtex.textures.tiles import grid_levels
 
-    pyramid.ROOT_NODES = ROOT_NODES
+    grid_levels.ROOT_NODES = ROOT_NODES
 
 
 def _tell_tiles() -> None:

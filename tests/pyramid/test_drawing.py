@@ -26,7 +26,7 @@ VIEW: dict[str, Any] = {"size": (200, 120), "focus": (3.2, 1.4), "samples": 9}
 @pytest.fixture(autouse=True, scope="module")
 def _small_roots(small_tiles: None) -> Iterator[None]:
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("flowtex.textures.tiles.pyramid.ROOT_NODES", 1250)
+        patch.setattr("flowtex.textures.tiles.grid_levels.ROOT_NODES", 1250)
         yield
 
 

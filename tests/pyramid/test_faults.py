@@ -59,7 +59,7 @@ def flow() -> FlowField:
 def whole(tmp_path_factory: pytest.TempPathFactory, small_tiles: None) -> Path:
     place = tmp_path_factory.mktemp("whole") / "flow.zarr"
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("flowtex.textures.tiles.pyramid.ROOT_NODES", 312)
+        patch.setattr("flowtex.textures.tiles.grid_levels.ROOT_NODES", 312)
         build(flow(), place, progress=False)
     return place
 

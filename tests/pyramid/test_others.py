@@ -32,7 +32,7 @@ TOLD: dict[str, Any] = {
 @pytest.fixture(autouse=True, scope="module")
 def _small(small_tiles: None) -> Iterator[None]:
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("flowtex.textures.tiles.pyramid.ROOT_NODES", 500)
+        patch.setattr("flowtex.textures.tiles.grid_levels.ROOT_NODES", 500)
         for module in ("stored", "source"):
             patch.setattr(f"flowtex.pyramid.{module}.WHOLE_NODES", 2000)
         yield

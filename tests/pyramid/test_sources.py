@@ -33,7 +33,7 @@ xr = pytest.importorskip("xarray")
 
 @pytest.fixture(autouse=True)
 def _small(monkeypatch: pytest.MonkeyPatch, small_tiles: None) -> None:
-    monkeypatch.setattr("flowtex.textures.tiles.pyramid.ROOT_NODES", 1250)
+    monkeypatch.setattr("flowtex.textures.tiles.grid_levels.ROOT_NODES", 1250)
 
 
 def dataset(lon: Floats, lat: Floats, *, steps: int = 1, plane: bool = False) -> Any:

@@ -29,7 +29,7 @@ ROUNDING = 2.0**-11
 
 @pytest.fixture(autouse=True)
 def _small_roots(monkeypatch: pytest.MonkeyPatch, small_tiles: None) -> None:
-    monkeypatch.setattr("flowtex.textures.tiles.pyramid.ROOT_NODES", 300)
+    monkeypatch.setattr("flowtex.textures.tiles.grid_levels.ROOT_NODES", 300)
     for module in ("stored", "source"):
         monkeypatch.setattr(f"flowtex.pyramid.{module}.WHOLE_NODES", 2000)
 

@@ -148,7 +148,7 @@ CASES = {
 @pytest.fixture(autouse=True)
 def small_root(monkeypatch: pytest.MonkeyPatch, small_tiles: None) -> None:
     """Let small surfaces have tiles."""
-    monkeypatch.setattr("flowtex.textures.tiles.pyramid.ROOT_NODES", 5000)
+    monkeypatch.setattr("flowtex.textures.tiles.grid_levels.ROOT_NODES", 5000)
     monkeypatch.setattr("flowtex.textures.tiles.triangle_pyramid.ROOT_NODES", 1500)
 
 

@@ -15,6 +15,7 @@ from flowtex.host.view import TileSource, WebView, even_steps, web_views
 from flowtex.rendering.webgl.client_data import ClientData
 from flowtex.scene.options import Options
 from flowtex.settings import Settings
+from flowtex.textures.tiles.grid_pyramid import GridPyramid
 from flowtex.textures.tiles.pyramid import TileKey
 from flowtex.textures.tiles.shared import coarsened_field
 
@@ -86,13 +87,13 @@ def test_arrays_are_those_of_the_texture_set(make: Any, image: Any) -> None:
 @pytest.mark.usefixtures("small_tiles")
 def test_a_node_has_one_position_at_all_levels(monkeypatch: pytest.MonkeyPatch) -> None:
     """So no crack opens between tiles; and what is rounded is a hundredth of a cell at most."""
-    monkeypatch.setattr("flowtex.textures.tiles.pyramid.ROOT_NODES", 3000)
+    monkeypatch.setattr("flowtex.textures.tiles.grid_levels.ROOT_NODES", 3000)
     lon, lat = np.meshgrid(np.linspace(0, 2 * np.pi, 257), np.linspace(-0.5, 0.5, 129) * np.pi)
     points = np.stack([np.cos(lat) * np.cos(lon), np.cos(lat) * np.sin(lon), np.sin(lat)], axis=-1)
     field = FlowField.from_arrays(700 * points + [4e5, -300, 20], np.cross([0.3, 1, 0.1], points))
     root = web_view(field).data()
     pyramid = root.pyramid
-    assert pyramid is not None and pyramid.depth == 2
+    assert isinstance(pyramid, GridPyramid) and pyramid.depth == 2
     source, found = TileSource(root), np.full(field.surface.points.shape, np.nan)
     coarse = pyramid.children(None)
     keys = [None, *coarse, *(child for key in coarse for child in pyramid.children(key))]

@@ -43,6 +43,7 @@ from flowtex.scene.scene import Scene
 from flowtex.settings import Settings
 from flowtex.textures.images import as_picture
 from flowtex.textures.texture_set import TextureSet
+from flowtex.textures.tiles.grid_pyramid import GridPyramid
 from flowtex.textures.tiles.pyramid import Pyramid, TileKey
 from flowtex.textures.tiles.triangle_pyramid import TrianglePyramid
 from flowtex.trace.store import SliceStore
@@ -362,7 +363,7 @@ def tiled(seed: int) -> dict[str, Any]:
     y, x = np.mgrid[0:1:260j, 0:1.6:401j]
     points = np.stack([x, y, 0.1 * np.sin(4 * x)], axis=-1)
     field = FlowField.from_arrays(points, np.ones((260, 401, 3)), periodic="i")
-    pyramid = Pyramid(field)
+    pyramid = GridPyramid(field)
     data = ClientData(Scene(field).textures, pyramid=pyramid)
     views = [asked(pyramid, look, rng, 2.0) for look in LOOKS]
     return {
@@ -398,7 +399,7 @@ def test_tiles_of_triangles_for_the_client(monkeypatch: pytest.MonkeyPatch) -> N
 
 
 def test_tiles_for_the_client(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("flowtex.textures.tiles.pyramid.ROOT_NODES", 5000)
+    monkeypatch.setattr("flowtex.textures.tiles.grid_levels.ROOT_NODES", 5000)
     expected = tiled(1)
     assert all(len(view["shown"]) > 1 for view in expected["views"])
     check("tiles.json", expected)
@@ -532,7 +533,7 @@ def test_what_a_formula_gives() -> None:
     parts = ("geometry", "slices", "formula", "pyramid", "mesh", "speed", "scalars")
     others = ("settings", "structure")
     fine = flowtex.formula("y", "-sin(x) - b*y", resolution=513, **ends)
-    pyramid = Pyramid(fine, nodes=(257, 513), depth=1)
+    pyramid = GridPyramid(fine, nodes=(257, 513), depth=1)
     tile = pyramid.textures(TileKey(0, 0, 1))
     assert tile is not None
     velocity = np.asarray(velocity_part(data.textures, 0), float)

@@ -12,7 +12,8 @@ from flowtex._util.array_types import Floats, Indices
 from flowtex.field import FlowField
 from flowtex.rendering.mesh_levels import MAX_ERROR_PIXELS, MeshLevels, Region, join
 from flowtex.textures.tiles.blocks import BLOCK_CELLS
-from flowtex.textures.tiles.pyramid import TILE_BLOCKS, Pyramid, TileKey
+from flowtex.textures.tiles.grid_pyramid import TILE_BLOCKS, GridPyramid
+from flowtex.textures.tiles.pyramid import Pyramid, TileKey
 
 SHAPES = [(2, 2), (65, 65), (66, 130), (64, 200), (3, 300), (100, 2)]
 
@@ -197,12 +198,12 @@ def _mixed(pyramid: Pyramid, rng: np.random.Generator) -> list[tuple[Region, Mes
 
 @pytest.mark.parametrize("seed", range(5))
 def test_tiles_of_different_levels_join_without_cracks(seed: int, monkeypatch: Any) -> None:
-    monkeypatch.setattr("flowtex.textures.tiles.pyramid.ROOT_NODES", 5000)
+    monkeypatch.setattr("flowtex.textures.tiles.grid_levels.ROOT_NODES", 5000)
     rng = np.random.default_rng(seed)
     shape = (int(rng.integers(200, 700)), int(rng.integers(200, 900)))
     points = grid(shape)
     field = FlowField.from_arrays(points, np.ones_like(points), periodic="")
-    pyramid = Pyramid(field)
+    pyramid = GridPyramid(field)
     parts = _mixed(pyramid, rng)
     joins = join([region for region, _, _ in parts], pyramid.blocks)
     triangles = []

@@ -17,7 +17,7 @@ from flowtex import FlowField
 from flowtex._util.array_types import Bytes
 from flowtex.rendering import uniforms
 from flowtex.rendering.vtk import layer
-from flowtex.textures.tiles.pyramid import Pyramid
+from flowtex.textures.tiles.grid_pyramid import GridPyramid
 
 pytestmark = [
     pytest.mark.usefixtures("opengl"),
@@ -255,12 +255,12 @@ def test_selection_finds_the_surface() -> None:
 def test_hidden_blocks_are_left_out_but_not_where_the_root_has_no_cells(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    monkeypatch.setattr("flowtex.textures.tiles.pyramid.ROOT_NODES", 5000)
+    monkeypatch.setattr("flowtex.textures.tiles.grid_levels.ROOT_NODES", 5000)
     x, y = np.meshgrid(np.arange(257.0), np.arange(193.0))
     velocity = np.stack([1 + 0 * x, 0.5 + 0 * x], axis=-1)
     velocity[100:120, 200:215] = np.nan
     field = FlowField.from_arrays(np.stack([x, y], axis=-1), velocity)
-    pyramid = Pyramid(field)
+    pyramid = GridPyramid(field)
     assert pyramid.depth >= 1 and pyramid.blocks == (3, 4)
     expected = np.zeros((3, 4), dtype=bool)
     expected[1, 3] = True  # of the hole

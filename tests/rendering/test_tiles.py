@@ -14,7 +14,8 @@ from waiting import PATIENCE_S
 import flowtex
 from flowtex.field import FlowField
 from flowtex.rendering.tile_choice import TileView, choose_tiles, cover, finer_part, wanted_tiles
-from flowtex.textures.tiles.pyramid import TILE_BLOCKS, Pyramid
+from flowtex.textures.tiles.grid_pyramid import TILE_BLOCKS, GridPyramid
+from flowtex.textures.tiles.pyramid import Pyramid
 from flowtex.textures.tiles.shared import _pyramids
 
 SIZE = (320, 240)
@@ -22,7 +23,7 @@ SIZE = (320, 240)
 
 @pytest.fixture
 def _tiled(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("flowtex.textures.tiles.pyramid.ROOT_NODES", 3000)
+    monkeypatch.setattr("flowtex.textures.tiles.grid_levels.ROOT_NODES", 3000)
 
 
 def flat(rows: int = 300, columns: int = 420) -> FlowField:
@@ -67,7 +68,7 @@ CASES: dict[Any, list[tuple[dict[str, Any], float]]] = {
 def test_tiles_draw_what_the_whole_draws(make: Any, monkeypatch: pytest.MonkeyPatch) -> None:
     field, pictures = make(), []
     for root in (10**9, 3000):
-        monkeypatch.setattr("flowtex.textures.tiles.pyramid.ROOT_NODES", root)
+        monkeypatch.setattr("flowtex.textures.tiles.grid_levels.ROOT_NODES", root)
         _pyramids._values.clear()
         pictures.append(
             [flowtex.render(field, size=SIZE, grain=1.5, **how) for how, _ in CASES[make]]
@@ -85,13 +86,13 @@ def test_tiles_in_the_background_come_after_a_coarse_picture(
     plotter: Any = pv.Plotter(off_screen=True, window_size=list(SIZE))
     handle = plotter.flowtex.add(flat(), scalars=False)
     told: list[int] = []
-    go, textures = threading.Event(), Pyramid.region
+    go, textures = threading.Event(), GridPyramid.region
 
     def slow(*arguments: Any) -> Any:
         go.wait(PATIENCE_S)
         return textures(*arguments)
 
-    monkeypatch.setattr(Pyramid, "region", slow)
+    monkeypatch.setattr(GridPyramid, "region", slow)
     handle.load_in_background(lambda: told.append(1))
     first = np.asarray(plotter.screenshot(return_img=True), float)
     assert handle.busy
@@ -119,7 +120,7 @@ def test_a_tile_that_fails_is_told_and_shown_coarse(
         msg = "the disk is gone"
         raise OSError(msg)
 
-    monkeypatch.setattr(Pyramid, "region", broken)
+    monkeypatch.setattr(GridPyramid, "region", broken)
     with pytest.warns(UserWarning, match="shown coarse.*the disk is gone"):
         shown = flowtex.render(flat(), size=SIZE, scalars=False)
     assert np.ptp(shown) > 100
@@ -188,7 +189,7 @@ def test_root_is_traced_where_it_is_seen(_tiled: None) -> None:
 
 
 def test_what_is_in_view_is_covered_once_and_as_fine_as_pixels(_tiled: None) -> None:
-    pyramid = Pyramid(flat(700, 900))
+    pyramid = GridPyramid(flat(700, 900))
     for seed in range(10):
         rng = np.random.default_rng(seed)
         check_cover(pyramid, view(rng), rng)

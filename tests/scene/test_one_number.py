@@ -440,7 +440,7 @@ def test_stores_have_the_numbers_of_their_data(
     field = FlowField.from_xarray(data, projection=name)
     place: Path = tmp_path_factory.mktemp("store") / "flow.zarr"
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("flowtex.textures.tiles.pyramid.ROOT_NODES", 60)
+        patch.setattr("flowtex.textures.tiles.grid_levels.ROOT_NODES", 60)
         flowtex.pyramid.build(field, place, progress=False)
         store = flowtex.pyramid.open(place)
     size = float(np.abs(data["u"]).max() + np.abs(data["v"]).max())

@@ -53,8 +53,9 @@ from flowtex.rendering.vtk.passes import DeferredPasses
 from flowtex.settings import Settings
 from flowtex.textures.geometry import SurfaceGeometry
 from flowtex.textures.texture_set import TextureSet
+from flowtex.textures.tiles.grid_pyramid import TILE_BLOCKS, GridPyramid
 from flowtex.textures.tiles.loader import Tile, TileLoader
-from flowtex.textures.tiles.pyramid import TILE_BLOCKS, Pyramid, TileKey
+from flowtex.textures.tiles.pyramid import Pyramid, TileKey
 
 LOOK_INTERVAL_MS = 250  #: Time after which a window is drawn again while tiles are on their way.
 RIBBON = "flowtexRibbon"  #: Attribute of the vertices of a ribbon: piece and side.
@@ -472,7 +473,7 @@ class SurfaceArrows:
         keys = sorted((key for key in layers if key is not None), key=lambda key: key.level)
         for key in keys:
             geometry = layers[key].textures.geometry
-            if pyramid is None or not isinstance(geometry, SurfaceGeometry):
+            if not isinstance(pyramid, GridPyramid) or not isinstance(geometry, SurfaceGeometry):
                 continue  # triangles of a level are not those of another
             row, column = np.divmod(
                 self._seeds.corners[seeds.cell, 0], pyramid.shape(pyramid.depth)[1]

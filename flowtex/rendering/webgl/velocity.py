@@ -25,7 +25,8 @@ from flowtex.textures.crossing import shown_speed
 from flowtex.textures.geometry import SurfaceGeometry
 from flowtex.textures.texture_set import UNCERTAIN_LAYER, TextureSet
 from flowtex.textures.tiles.blocks import BLOCK_CELLS
-from flowtex.textures.tiles.pyramid import PATH_CELLS, TILE_BLOCKS
+from flowtex.textures.tiles.grid_pyramid import TILE_BLOCKS
+from flowtex.textures.tiles.pyramid import PATH_CELLS
 from flowtex.textures.value_ranges import range_rules
 from flowtex.trace.sampler import RESTING_CELLS, STILL_CELLS, STOPPED_SPEED, Charts
 from flowtex.trace.slices import drawn_lags

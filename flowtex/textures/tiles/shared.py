@@ -11,6 +11,7 @@ from flowtex._util.cache import WeakCache
 from flowtex.field import FlowField
 from flowtex.textures.tiles import triangle_pyramid
 from flowtex.textures.tiles.clusters import Levels
+from flowtex.textures.tiles.grid_pyramid import GridPyramid
 from flowtex.textures.tiles.pyramid import Pyramid
 from flowtex.textures.tiles.triangle_pyramid import TrianglePyramid
 
@@ -32,9 +33,9 @@ def has_pyramid(field: FlowField) -> bool:
 
 def shared_pyramid(field: FlowField, parameter: str, lines: str = "pathlines") -> Pyramid:
     """Return the pyramid of a field, one for all that show the field at the same time."""
-    kind: type[Pyramid]
+    kind: type[GridPyramid | TrianglePyramid]
     if field.triangles is None:
-        kind = Pyramid
+        kind = GridPyramid
     else:
         kind = TrianglePyramid
     make = _attached.get(field, kind)

@@ -62,7 +62,9 @@ class TrianglePyramid(Pyramid):
         self, field: FlowField, parameter: str = "arclength", lines: str = "pathlines"
     ) -> None:
         self._clusters = Levels(field, ROOT_NODES)
-        super().__init__(field, parameter, lines, depth=len(self._clusters) - 1)
+        depth = len(self._clusters) - 1
+        super().__init__(field, parameter, lines, nodes=field.shape, depth=depth)
+        self._roughness: dict[int, Floats] = {}
         self._parts: dict[int, list[Indices]] = {}
 
     def at_level(self, level: int) -> FlowField:

@@ -39,7 +39,7 @@ def store(tmp_path_factory: pytest.TempPathFactory) -> Path:
     field = FlowField.from_arrays(np.stack([x, y], axis=-1), velocity, periodic="")
     place = tmp_path_factory.mktemp("served") / "flow.zarr"
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("flowtex.textures.tiles.pyramid.ROOT_NODES", 4000)
+        patch.setattr("flowtex.textures.tiles.grid_levels.ROOT_NODES", 4000)
         build(field, place, progress=False)
     return place
 

@@ -19,7 +19,7 @@ from trame.app import get_server
 import flowtex
 from flowtex.app import FlowApp, FlowArea
 from flowtex.rendering.webgl.protocol import file_infos
-from flowtex.textures.tiles.pyramid import Pyramid
+from flowtex.textures.tiles.grid_pyramid import GridPyramid
 
 pytestmark = pytest.mark.usefixtures("opengl")
 
@@ -69,7 +69,7 @@ def asking(app: FlowApp, scene: dict[str, Any]) -> Any:
 def test_a_tile_is_made_when_it_is_asked_for(
     monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ) -> None:
-    monkeypatch.setattr("flowtex.textures.tiles.pyramid.ROOT_NODES", 10_000)
+    monkeypatch.setattr("flowtex.textures.tiles.grid_levels.ROOT_NODES", 10_000)
     app = large()
     (scene,) = app.area.begin("browser")["scenes"]
     assert app.stream.paused
@@ -89,7 +89,7 @@ def test_a_tile_is_made_when_it_is_asked_for(
     (record,) = [r for r in caplog.records if r.name.startswith("flowtex")]
     assert "tile (0, 5, 5) does not exist" in record.getMessage()
     with monkeypatch.context() as patch:
-        patch.setattr(Pyramid, "region", None)
+        patch.setattr(GridPyramid, "region", None)
         with pytest.raises(web.HTTPNotFound):
             ask("0,0,0.0")
     # What was wrong was the network, which is there again when it is requested later.

@@ -174,7 +174,7 @@ def test_stores_are_drawn_on_their_own_map(
         place = tmp_path / f"{own}.zarr"
         field = FlowField.from_xarray(winds(*REGION), projection=projection)
         with monkeypatch.context() as patch:
-            patch.setattr("flowtex.textures.tiles.pyramid.ROOT_NODES", 150)
+            patch.setattr("flowtex.textures.tiles.grid_levels.ROOT_NODES", 150)
             flowtex.pyramid.build(field, place, progress=False)
         store = flowtex.pyramid.open(place)
         assert store.valid.size < 200
@@ -205,7 +205,7 @@ def test_a_store_is_drawn_on_axes_that_end_at_another_meridian(
 ) -> None:
     pytest.importorskip("zarr")
     lon, projection, crs = TURNED[name]
-    monkeypatch.setattr("flowtex.textures.tiles.pyramid.ROOT_NODES", 150)
+    monkeypatch.setattr("flowtex.textures.tiles.grid_levels.ROOT_NODES", 150)
     # Blank lines remain in the coarsest level.
     monkeypatch.setattr("flowtex.sources.maps.COARSE_NODES", 100)
     place = tmp_path / "turned.zarr"

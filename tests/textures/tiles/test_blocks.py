@@ -9,7 +9,7 @@ from triangle_meshes import sphere
 from flowtex._util.array_types import Floats
 from flowtex.field import FlowField
 from flowtex.textures.tiles.blocks import BLOCK_CELLS, SMOOTH_CELLS
-from flowtex.textures.tiles.pyramid import Pyramid
+from flowtex.textures.tiles.grid_pyramid import GridPyramid
 from flowtex.textures.tiles.triangle_pyramid import TrianglePyramid
 from flowtex.trace.trace import trace
 
@@ -34,7 +34,7 @@ def field(velocity: Floats | None = None, z: Floats | float = 0.0, **given: obje
 
 
 def test_root_of_smooth_field_is_coarse_and_keeps_its_streamlines() -> None:
-    pyramid = Pyramid(field())
+    pyramid = GridPyramid(field())
     assert pyramid.depth == 2 and (pyramid.enlarged(2) > 2).all()
     root = pyramid.root
     slices = trace(root, progress=False)
@@ -73,7 +73,7 @@ def bump() -> FlowField:
 
 @pytest.mark.parametrize("make", [vortex, blank, scalar, bump])
 def test_only_block_with_detail_is_refined_as_before(make: object) -> None:
-    pyramid = Pyramid(make())  # type: ignore[operator]
+    pyramid = GridPyramid(make())  # type: ignore[operator]
     for level in (1, 2):
         factors = pyramid.enlarged(level)
         rough = BESIDE if level == 1 else (BESIDE[0] // 2, BESIDE[1] // 2)
@@ -85,7 +85,7 @@ def test_noise_and_series_have_the_usual_root() -> None:
     noise = np.random.default_rng(1).normal(size=(*X.shape, 2))
     series = np.stack([gyre(), 2 * gyre()])
     for flow in (noise, series):
-        pyramid = Pyramid(field(flow))
+        pyramid = GridPyramid(field(flow))
         assert pyramid.depth == 0 and (pyramid.enlarged(0) == 1).all()
 
 
@@ -95,7 +95,7 @@ def test_thin_cells_beside_long_ones_may_bend() -> None:
     flow = np.stack([np.cos(j / 2), np.sin(j / 2)], -1)
     for height, expected in ((0.01, SMOOTH_CELLS), (1.0, 1.0)):
         points = np.stack([i, height * j], -1).astype(float)
-        assert (Pyramid(FlowField.from_arrays(points, flow)).enlarged(1) == expected).all()
+        assert (GridPyramid(FlowField.from_arrays(points, flow)).enlarged(1) == expected).all()
 
 
 def test_triangles_without_neighbours_have_no_errors(monkeypatch: pytest.MonkeyPatch) -> None:

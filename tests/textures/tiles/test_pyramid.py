@@ -12,14 +12,15 @@ from flowtex._util.array_types import Floats
 from flowtex.field import FlowField
 from flowtex.textures.geometry import SurfaceGeometry
 from flowtex.textures.texture_set import TextureSet
-from flowtex.textures.tiles.pyramid import Pyramid, TileKey, is_cut
+from flowtex.textures.tiles.grid_pyramid import GridPyramid, is_cut
+from flowtex.textures.tiles.pyramid import TileKey
 from flowtex.trace.store import SliceStore
 from flowtex.trace.trace import trace
 
 
 @pytest.fixture(autouse=True)
 def _small_roots(monkeypatch: pytest.MonkeyPatch, small_tiles: None) -> None:
-    monkeypatch.setattr("flowtex.textures.tiles.pyramid.ROOT_NODES", 190)
+    monkeypatch.setattr("flowtex.textures.tiles.grid_levels.ROOT_NODES", 190)
 
 
 def grid(rows: int, columns: int) -> tuple[Floats, Floats]:
@@ -59,7 +60,7 @@ def nodal(tile: TextureSet, step: int = 0) -> Floats:
 
 def test_a_small_field_is_its_root() -> None:
     field = waves(10, 13)
-    pyramid = Pyramid(field)
+    pyramid = GridPyramid(field)
     assert pyramid.depth == 0
     assert pyramid.children(None) == []
     np.testing.assert_array_equal(pyramid.root.velocity, field.velocity)
@@ -67,7 +68,7 @@ def test_a_small_field_is_its_root() -> None:
 
 @pytest.mark.parametrize("shape", [(74, 84), (65, 129), (66, 150)])
 def test_the_tiles_of_each_level_cover_its_cells_once(shape: tuple[int, int]) -> None:
-    pyramid = Pyramid(waves(*shape))
+    pyramid = GridPyramid(waves(*shape))
     keys = pyramid.children(None)
     for level in range(pyramid.depth - 1, -1, -1):
         covered = np.zeros([n - 1 for n in pyramid.shape(level)], dtype=int)
@@ -83,18 +84,18 @@ def test_the_tiles_of_each_level_cover_its_cells_once(shape: tuple[int, int]) ->
 
 def test_nodes_of_a_level_are_nodes_of_the_field() -> None:
     field = waves()
-    root = Pyramid(field).root
+    root = GridPyramid(field).root
     assert root.valid.size <= 190
     assert {*map(tuple, root.points.reshape(-1, 3))} <= {*map(tuple, field.points.reshape(-1, 3))}
     np.testing.assert_array_equal(root.points[-1, -1], field.points[-1, -1])
-    assert root.shape == Pyramid(field).shape(Pyramid(field).depth)
+    assert root.shape == GridPyramid(field).shape(GridPyramid(field).depth)
 
 
 def test_an_even_flow_stays_even_beside_land() -> None:
     x, y = grid(74, 84)
     land = np.hypot(x - 0.3, y - 0.3) < 0.1
     velocity = np.where(land[..., None], np.nan, np.stack([1 + 0 * x, 2 + 0 * x], axis=-1))
-    root = Pyramid(FlowField.from_arrays(np.stack([x, y], axis=-1), velocity)).root
+    root = GridPyramid(FlowField.from_arrays(np.stack([x, y], axis=-1), velocity)).root
     np.testing.assert_allclose(root.velocity[0][root.valid] - [1, 2, 0], 0, atol=1e-12)
     assert not root.velocity[0][~root.valid].any()
 
@@ -102,7 +103,7 @@ def test_an_even_flow_stays_even_beside_land() -> None:
 @pytest.mark.parametrize("key", [TileKey(0, 0, 0), TileKey(0, 1, 1)])
 def test_slopes_of_a_tile_are_those_of_the_field(key: TileKey) -> None:
     field = waves(84, 100)
-    tile = Pyramid(field).textures(key)
+    tile = GridPyramid(field).textures(key)
     assert tile is not None
     mine = nodal(tile)
     row, column = (TILE_CELLS * at for at in key[1:])
@@ -120,7 +121,7 @@ def test_slopes_go_on_across_the_seam_of_a_ring() -> None:
     velocity = np.stack([-np.sin(a) + 0.2 * np.cos(a), np.cos(a) + 0.2 * np.sin(a)], axis=-1)
     field = FlowField.from_arrays(points, velocity)
     assert field.periodic == (False, True)
-    tiles = [Pyramid(field).textures(TileKey(0, 0, at)) for at in (0, 4)]
+    tiles = [GridPyramid(field).textures(TileKey(0, 0, at)) for at in (0, 4)]
     assert tiles[0] is not None
     assert tiles[1] is not None
     off = np.abs(nodal(tiles[0])[:, :, 0] - nodal(tiles[1])[:, :, -1])[..., :3].max(axis=(1, 2))
@@ -134,9 +135,9 @@ def test_tiles_traced_together_equal_tiles_traced_alone(*, closed: bool) -> None
         a, r = np.meshgrid(np.linspace(0, 2 * np.pi, 97), np.linspace(1, 2, 129))
         points = np.stack([r * np.cos(a), r * np.sin(a)], axis=-1)
         velocity = np.stack([-np.sin(a) + 0.2 * np.cos(a), np.cos(a) + 0.2 * np.sin(a)], axis=-1)
-        pyramid = Pyramid(FlowField.from_arrays(points, velocity))
+        pyramid = GridPyramid(FlowField.from_arrays(points, velocity))
     else:
-        pyramid = Pyramid(waves())
+        pyramid = GridPyramid(waves())
     keys = [TileKey(0, j, i) for j in range(2) for i in range(2)]
     together = pyramid.tiles(keys, [0])
     stores = {textures.store for textures in together.values() if textures is not None}
@@ -157,7 +158,7 @@ def test_a_field_that_varies_is_followed_in_time() -> None:
         np.stack([np.cos(3 * y + t), np.sin(4 * x - t) + 0.2], axis=-1) for t in (0.0, 0.5, 1.0)
     ]
     field = FlowField.from_arrays(np.stack([x, y], axis=-1), np.stack(steps), times=[0.0, 0.2, 0.4])
-    tile = Pyramid(field).textures(TileKey(0, 0, 0))
+    tile = GridPyramid(field).textures(TileKey(0, 0, 0))
     assert tile is not None
     mine = nodal(tile, 2)
     theirs = whole_layers(field, tile, 2)[:, : TILE_CELLS + 1, : TILE_CELLS + 1]
@@ -169,7 +170,7 @@ def test_a_field_that_varies_is_followed_in_time() -> None:
 def test_a_tile_of_land_is_none() -> None:
     x, y = grid(74, 150)
     velocity = np.where((x < 0.8)[..., None], np.nan, np.ones((74, 150, 2)))
-    pyramid = Pyramid(FlowField.from_arrays(np.stack([x, y], axis=-1), velocity))
+    pyramid = GridPyramid(FlowField.from_arrays(np.stack([x, y], axis=-1), velocity))
     assert pyramid.textures(TileKey(0, 0, 0)) is None
     assert pyramid.textures(TileKey(0, 0, 1)) is not None
 
@@ -181,7 +182,7 @@ def test_paths_that_a_halo_cuts_are_noticed_in_any_unit_of_time(speed: float) ->
     points, velocity = np.stack([x, y], axis=-1), np.stack([fast, 0 * x], axis=-1)
     cut, layers = [], []
     for s in (1.0, speed):
-        pyramid = Pyramid(FlowField.from_arrays(points, s * velocity, periodic=""), "time")
+        pyramid = GridPyramid(FlowField.from_arrays(points, s * velocity, periodic=""), "time")
         for widening in (1, 8):
             tile = pyramid.region([TileKey(0, 0, 1)], widening)[TileKey(0, 0, 1)]
             assert tile is not None
@@ -195,12 +196,14 @@ def test_paths_that_a_halo_cuts_are_noticed_in_any_unit_of_time(speed: float) ->
 
 
 def test_paths_over_a_pole_need_not_all_of_a_long_ring(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("flowtex.textures.tiles.pyramid.ROOT_NODES", 1000)
+    monkeypatch.setattr("flowtex.textures.tiles.grid_levels.ROOT_NODES", 1000)
     lon, lat = np.meshgrid(np.linspace(0, 2 * np.pi, 501), np.linspace(-0.5, 0.5, 130) * np.pi)
     points = np.stack([np.cos(lat) * np.cos(lon), np.cos(lat) * np.sin(lon), np.sin(lat)], axis=-1)
-    pyramid = Pyramid(FlowField.from_arrays(points, np.cross([0.3, 1.0, 0.1], points)))
+    pyramid = GridPyramid(FlowField.from_arrays(points, np.cross([0.3, 1.0, 0.1], points)))
     some = pyramid.textures(TileKey(0, 0, 1))
-    monkeypatch.setattr("flowtex.textures.tiles.pyramid._ring", lambda _, count: np.arange(count))
+    monkeypatch.setattr(
+        "flowtex.textures.tiles.grid_pyramid._ring", lambda _, count: np.arange(count)
+    )
     whole = pyramid.textures(TileKey(0, 0, 1))
     assert whole is not None and some is not None
     assert some.geometry.field.shape[1] < 380 < whole.geometry.field.shape[1]
