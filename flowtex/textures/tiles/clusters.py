@@ -10,7 +10,7 @@ many faces meet there that they are smaller than the bin: then it becomes one no
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any, overload
@@ -20,6 +20,7 @@ import numpy as np
 from flowtex._util.array_types import Bools, Floats, Indices
 from flowtex._util.arrays import bounds, dot, first_places, norm, numbered
 from flowtex._util.forks import ProcessLock
+from flowtex._util.progress import track
 from flowtex.errors import FieldError
 from flowtex.field import FlowField
 from flowtex.field.steps import Steps, map_steps
@@ -55,6 +56,9 @@ MOST_FACES = 3
 MERGED = 0
 #: Most nodes of the next level, as a share of the nodes of a level that is not the last.
 MOST_LEFT = 0.7
+
+#: Levels that are made at once: the finest and the last two.
+FIRST_LEVELS = 3
 
 
 @dataclass(frozen=True, eq=False)
@@ -275,11 +279,18 @@ class Levels(Sequence[Clusters]):
     """
 
     def __init__(self, field: FlowField, nodes: int) -> None:
-        finest = Clusters.of(field)
         self._lock = ProcessLock()
-        self._made = {0: finest}
+        self._made: dict[int, Clusters] = {}
+        for _ in track(self._make(field, nodes), FIRST_LEVELS, "Simplifying"):
+            pass
+
+    def _make(self, field: FlowField, nodes: int) -> Iterator[None]:
+        """Make the finest level, and the last two; yield before each of them."""
+        yield
+        finest = self._made[0] = Clusters.of(field)
         last = _steps_to(finest, nodes) - 1
         while last > 0:
+            yield
             self._made[last] = finest.coarser(last)
             if 0 < self.nodes(last) < MOST_LEFT**last * self.nodes(0):
                 break
@@ -287,6 +298,7 @@ class Levels(Sequence[Clusters]):
             last -= 1
         self._last = max(last, 0)
         while self.nodes(self._last) > nodes:
+            yield
             coarser = self._made[self._last].coarser()
             if not 0 < coarser.field.shape[1] < MOST_LEFT * self.nodes(self._last):
                 break

@@ -12,6 +12,7 @@ from triangle_meshes import cube, joined, random_plane, sheet, sphere, surface_o
 import flowtex
 from flowtex import FlowField
 from flowtex._util.array_types import Floats, Indices
+from flowtex._util.progress import Stopped, stoppable
 from flowtex.textures.texture_set import TextureSet
 from flowtex.textures.tiles.clusters import MERGED, Clusters, Levels
 from flowtex.textures.tiles.pyramid import TileKey
@@ -217,6 +218,11 @@ def test_levels_between_are_made_when_they_are_needed(rng: np.random.Generator) 
     assert counts == [levels.nodes(number) for number in range(len(levels))]
     np.testing.assert_allclose(expected, counts, rtol=0.3)
     assert all(0.15 < after / before < 0.4 for before, after in itertools.pairwise(counts))
+
+
+def test_making_levels_can_be_cancelled(rng: np.random.Generator) -> None:
+    with pytest.raises(Stopped), stoppable(lambda: True):
+        Levels(plane(rng), 200)
 
 
 def with_crumbs(rng: np.random.Generator) -> FlowField:
