@@ -373,11 +373,11 @@ class Settings:
     def __setattr__(self, name: str, value: Any) -> None:
         """Check a value, set it, and call the observers when it differs."""
         if name.startswith("_"):
-            object.__setattr__(self, name, value)
+            super().__setattr__(name, value)
             return
         checked = setting(name).check(value)
         changed = name not in self.__dict__ or self.__dict__[name] != checked
-        object.__setattr__(self, name, checked)
+        super().__setattr__(name, checked)
         if changed and "_changed" in self.__dict__:
             self._changed.emit(name, checked)
 

@@ -95,7 +95,7 @@ class View:
     def made(self) -> Scene:
         """Make the flow with its settings, at its time."""
         settings = Settings(**{"samples": 11, **self.settings})
-        shown = Scene(self.field(), settings, Appearance(image=self.image))
+        shown = Scene(self.field(), settings, Appearance.of(image=self.image))
         if self.time is not None:
             shown.time = self.time
         return shown

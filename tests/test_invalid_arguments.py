@@ -21,6 +21,7 @@ import flowtex.xarray
 from flowtex import FieldError, FlowField, TraceSlices
 from flowtex.field.earth.projection import Projection
 from flowtex.field.formula.make import line_field
+from flowtex.field.options import option_names
 from flowtex.field.uncertainty import with_uncertainty
 from flowtex.rendering.camera import Camera
 from flowtex.scene.options import Appearance, Options
@@ -492,7 +493,7 @@ CALLS: dict[str, tuple[Callable[..., object], dict[str, Any]]] = {
     "Settings": (flowtex.Settings, {name: row.default for name, row in TABLE.items()}),
     "Scene": (
         partial(Scene.of, field()),
-        dict.fromkeys(set(Appearance.__dataclass_fields__) - {"log_scale", "opacity", "visible"}),
+        dict.fromkeys(set(option_names(Appearance)) - {"log_scale", "opacity", "visible"}),
     ),
     "opacity": (partial(Scene.of, field()), {"opacity": 1.0}),
     "locate": (locate, {"field": field, "point": (0.5, 0.5)}),

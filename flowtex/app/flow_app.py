@@ -121,7 +121,7 @@ class FlowApp:
         self.viewport = self.area.viewport
         self.stream = self.area.stream
         if camera is not None:
-            self.viewport.camera = ViewOptions(camera=camera).first_camera(field.surface)
+            self.viewport.camera = ViewOptions.of(camera=camera).first_camera(field.surface)
         self.context = Context(self.state, self.area, library.branch())
         self.server.state.trame__favicon = None
         self.state.set(panel=False, group="View", help=False, problem="")

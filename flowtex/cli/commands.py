@@ -184,6 +184,7 @@ def serve_processes(page: ServeFlags | None) -> bool:
 def serve_library(library: Library, page: ServeFlags | None, options: dict[str, Any]) -> int:
     """Serve flows as a page, or hand them to the session of this process."""
     from flowtex.app.flow_app import app_maker, first_choice, serve
+    from flowtex.field.options import option_names
     from flowtex.scene.options import Appearance
     from flowtex.scene.scene import Scene
 
@@ -191,7 +192,7 @@ def serve_library(library: Library, page: ServeFlags | None, options: dict[str, 
     with waiting(f"Reading {library.names[0]}"):
         field = library.field(*first_choice(library, options))
     look = {}
-    for name in vars(Appearance()):
+    for name in option_names(Appearance):
         if name in options:
             look[name] = options[name]
     Scene.of(field, **look).close()  # raises errors before a page asks

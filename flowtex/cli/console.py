@@ -100,7 +100,7 @@ def load_field(files: Sequence[Path], choice: Mapping[str, Any]) -> FlowField:
         mesh = files[0]
     time = options.pop("time", None)
     with waiting(f"Reading {files[0].name}"):
-        return read_field(mesh, FieldOptions(**options), time)
+        return read_field(mesh, FieldOptions.of(**options), time)
 
 
 def check_picture_file(output: Path) -> None:

@@ -138,7 +138,7 @@ class FieldConstructors:
         from flowtex.sources.meshes.read_meshes import read_meshes
 
         require_pyvista(f"a flow from an object of type {type(mesh).__name__}")
-        chosen = FieldOptions(**options)
+        chosen = FieldOptions.of(**options)
         field = cls.of(read_meshes(mesh, chosen, name=name))
         return with_uncertainty(field, chosen.uncertainty)
 
@@ -204,7 +204,7 @@ class FieldConstructors:
         """
         from flowtex.sources.read_files import errors_of, read_files
 
-        chosen = FieldOptions(**options)
+        chosen = FieldOptions.of(**options)
         with errors_of(path):
             arrays = read_files(path, chosen, time=time)
             return with_uncertainty(cls.of(cast("FieldArrays", arrays)), chosen.uncertainty)

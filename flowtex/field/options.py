@@ -140,48 +140,47 @@ class FieldOptions:
         ":func:`flowtex.trace` or ``TraceSlices.open``. By default flowtex traces them.",
     )
 
-    def __post_init__(self) -> None:
-        """Join the names of components, or of a speed and a direction, to ``vectors``."""
-        self._join_direction()
-        names = [name for name in (self.u, self.v, self.w) if name is not None]
+    #: Values that colour the surface, one for each node or cell; no argument of its own.
+    array: Any | None = None
+
+    @classmethod
+    def of(cls, **given: Any) -> FieldOptions:
+        """Return the options of arguments; names of components are joined to ``vectors``.
+
+        Parameters
+        ----------
+        given
+            Fields of this class by name.
+
+        Raises
+        ------
+        FieldError
+            When names are arrays, do not belong together, or contradict one another.
+        """
         for argument in ("vectors", *"uvw"):
-            name = getattr(self, argument)
+            name = given.get(argument)
             if not isinstance(name, (str, type(None))):
                 raise FieldError(
                     f"{argument} is {brief(name)}; expected the name of an array. Pass arrays "
                     "themselves by position, as in flowtex.show(x, y, u, v)"
                 )
-        if not names:
-            return
-        if self.vectors is not None or self.u is None or self.v is None:
-            given = []
-            for argument, name in vars(self).items():
-                if argument in ("vectors", *"uvw") and name:
-                    given.append(f"{argument}={name!r}")
+        chosen = _with_direction(given)
+        components = {}
+        for argument in "uvw":
+            name = chosen.pop(argument, None)
+            if name is not None:
+                components[argument] = name
+        if not components:
+            return cls(**chosen)
+        vectors = chosen.get("vectors")
+        if vectors is not None or "u" not in components or "v" not in components:
+            named = {"vectors": vectors, **components}
+            texts = [f"{argument}={name!r}" for argument, name in named.items() if name]
             raise FieldError(
-                f"{', '.join(given)} is given; expected u and v (and w of a mesh), or vectors alone"
+                f"{', '.join(texts)} is given; expected u and v (and w of a mesh), or vectors alone"
             )
-        object.__setattr__(self, "vectors", ",".join(names))
-        for name in "uvw":
-            object.__setattr__(self, name, None)
-
-    def _join_direction(self) -> None:
-        """Put the names of a speed and of its direction into ``vectors``."""
-        if self.direction is None:
-            return
-        if not isinstance(self.direction, str):
-            return
-        if self.v is not None or self.w is not None:
-            raise FieldError(
-                f"direction is {self.direction!r} and components are named too; expected the speed "
-                f'alone, as in vectors="speed", direction="{self.direction}"'
-            )
-        speed = self.vectors
-        if self.u is not None:
-            speed = self.u
-            object.__setattr__(self, "u", None)
-        if speed is not None and "," not in speed:
-            object.__setattr__(self, "vectors", f"{speed},{self.direction}")
+        chosen["vectors"] = ",".join(components.values())
+        return cls(**chosen)
 
     @classmethod
     def of_dataset(cls, given: Mapping[str, Any]) -> FieldOptions:
@@ -195,13 +194,13 @@ class FieldOptions:
                 axes[name] = value
         if axes:
             known["sel"] = {**(known.get("sel") or {}), **axes}
-        return cls(**known)
+        return cls.of(**known)
 
     @property
     def given(self) -> dict[str, Any]:
         """Values by name of arguments that select data, without those that are ``None``."""
         given = {}
-        for name in self.__dataclass_fields__:
+        for name in option_names(FieldOptions):
             value = getattr(self, name)
             if value is not None and name != "slices":
                 given[name] = value
@@ -227,6 +226,32 @@ class FieldOptions:
             raise FieldError(f"{', '.join(refused)} applies to {scope}; omit it")
 
 
+def option_names(kind: type) -> tuple[str, ...]:
+    """Return the names of the fields of an option class that are arguments, which have a text."""
+    return tuple(each.name for each in fields(kind) if "text" in each.metadata)
+
+
+def _with_direction(given: Mapping[str, Any]) -> dict[str, Any]:
+    """Return options with the names of a speed and of its direction in ``vectors``."""
+    chosen = dict(given)
+    direction = chosen.get("direction")
+    if not isinstance(direction, str):
+        return chosen
+    if chosen.get("v") is not None or chosen.get("w") is not None:
+        raise FieldError(
+            f"direction is {direction!r} and components are named too; expected the speed "
+            f'alone, as in vectors="speed", direction="{direction}"'
+        )
+    speed = chosen.pop("u", None)
+    if speed is None:
+        speed = chosen.get("vectors")
+    if speed is not None:
+        chosen["vectors"] = speed
+        if "," not in speed:
+            chosen["vectors"] = f"{speed},{direction}"
+    return chosen
+
+
 def accepts_options(
     *kinds: type, names: Collection[str] = (), settings: bool = True
 ) -> Callable[[Function], Function]:
@@ -239,8 +264,9 @@ def accepts_options(
     def complete(function: Function) -> Function:
         options: list[Field[Any]] = []
         for kind in kinds:
+            arguments = option_names(kind)
             for option in fields(kind):
-                if not names or option.name in names:
+                if option.name in arguments and (not names or option.name in names):
                     options.append(option)
         signature = inspect.signature(function)
         parameters = []

@@ -196,7 +196,7 @@ class FlowHandle(AppearanceAttributes):
             When the mesh does not contain a flow, or lacks the scalar that colours the surface;
             nothing is changed then.
         """
-        reading = FieldOptions(**options)
+        reading = FieldOptions.of(**options)
         field = share_field(read_field(mesh, reading))
         self.show_scene(self.scene.showing(field, keep_range=False))
         self.follow_mesh(mesh, reading)

@@ -279,7 +279,7 @@ def _source_of(data: Any, *, name: str = "", **given: Any) -> NodeSource:
         time = None
         if not dataset_paths(files):
             time = given.pop("time", None)
-            options = FieldOptions(**given)
+            options = FieldOptions.of(**given)
         return _source_from(read_files(files, options, time=time, regions=regions))
 
 

@@ -35,7 +35,6 @@ from flowtex.trace.store import SliceStore, chosen_lines, shared_store
 DERIVED_FACTOR = 4
 KEPT_BYTES = 500_000_000  #: Memory limit of the cache of drawn fields and traces, in bytes.
 DATA = "Data"  #: Name of a scalar array without a name, as in PyVista.
-ARRAY = "_array"  #: Attribute of :class:`FieldOptions` with this array.
 
 _fields: WeakCache[FlowField] = WeakCache()
 #: Attributes that are compared as texts, or not at all.
@@ -89,7 +88,7 @@ def read_field(mesh: Any, options: FieldOptions, time: float | str | None = None
     FieldError
         For data without a flow, and for an array of colours whose nodes are unknown.
     """
-    array = getattr(options, ARRAY, None)
+    array = options.array
     uncertainty = options.uncertainty
     if array is not None and hasattr(mesh, "point_data"):
         mesh = with_array(mesh, DATA, array)

@@ -17,7 +17,7 @@ from flowtex._util.written import (
     numbers,
     or_none,
 )
-from flowtex.field.options import FieldOptions
+from flowtex.field.options import FieldOptions, option_names
 from flowtex.rendering.camera import Camera
 from flowtex.scene.options import EARTH_LINES, ROBUST, SWITCHES, Appearance, ViewOptions
 from flowtex.settings import setting
@@ -39,7 +39,7 @@ def _read_differences(words: Sequence[str]) -> dict[str, Any]:
     values = {}
     for flag, text in texts.items():
         name = flag.replace("-", "_")
-        if name in Appearance.__dataclass_fields__:
+        if name in option_names(Appearance):
             values[name] = FORMS[name].read(text)
         else:
             values[name] = setting(name).parse(text)
@@ -98,7 +98,7 @@ _SPECIAL = {
 #: Form of each argument that can be written as text.
 FORMS: dict[str, Form] = {}
 for _kind in (FieldOptions, Appearance, ViewOptions):
-    for _name in _kind.__dataclass_fields__:
+    for _name in option_names(_kind):
         if _name in (*SWITCHES, *EARTH_LINES):
             FORMS[_name] = SWITCH
         elif _name not in ("times", "slices"):

@@ -9,7 +9,7 @@ appearance of the surface, and the view. Others are settings.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import TYPE_CHECKING, Any
@@ -29,10 +29,10 @@ from flowtex.errors import FieldError, notify, raise_faults
 from flowtex.field import FlowField, Surface
 from flowtex.field.derived.quantities import COMPONENTS, SIGNED, component_name
 from flowtex.field.earth.coast import Coast
-from flowtex.field.options import FieldOptions, option
+from flowtex.field.options import FieldOptions, option, option_names
 from flowtex.field.validation import with_gaps
 from flowtex.rendering.camera import CAMERA_LIMITS, Camera, read_camera
-from flowtex.scene.fields import ARRAY, DATA
+from flowtex.scene.fields import DATA
 from flowtex.settings import TABLE, Settings, SettingsError
 from flowtex.sources.coast_files import as_coast
 
@@ -158,49 +158,63 @@ class Appearance:
         "sea without data has a colour near the background. ``None`` draws nothing there.",
     )
 
+    @classmethod
+    def of(cls, **given: Any) -> Appearance:
+        """Return the appearance of arguments, of which some stand for others.
+
+        ``scalars=None`` is the speed, ``cmap=None`` the colour map that suits the scalars, one
+        number as ``clim`` a range around zero, and ``land=False`` or ``"none"`` no colour.
+
+        Parameters
+        ----------
+        given
+            Fields of this class by name.
+
+        Raises
+        ------
+        FieldError
+            When a value is invalid; the error lists all that are.
+        """
+        values = dict(given)
+        scalars = values.get("scalars")
+        if scalars is None or scalars is True:
+            values["scalars"] = SPEED
+        if values.get("cmap") is None:
+            values["cmap"] = default_cmap(values["scalars"])
+        values["clim"] = _as_range(values.get("clim"))
+        land = values.get("land", LAND_COLOR)
+        if land is False or (isinstance(land, str) and land == "none"):
+            values["land"] = None
+        return cls(**values)
+
     def __post_init__(self) -> None:
-        """Check the values, and replace those that stand for others."""
+        """Check the values."""
         faults = []
-        if self.scalars is None or self.scalars is True:
-            object.__setattr__(self, "scalars", SPEED)
-        elif self.scalars is not False and not isinstance(self.scalars, str):
+        if self.scalars is not False and not isinstance(self.scalars, str):
             faults.append(
                 f"scalars is {brief(self.scalars)}; expected the name of an array, or False"
             )
         if self.component is not None and str(self.component) not in COMPONENTS:
             faults.append(f"component is {brief(self.component)}; expected 0 to 2, or x to z")
-        if self.cmap is None:
-            object.__setattr__(self, "cmap", default_cmap(self.scalars))
         if not (is_number(self.opacity) and 0 <= self.opacity <= 1):
             faults.append(f"opacity is {brief(self.opacity)}; expected a number from 0 to 1")
-        faults += self._check_range()
+        faults += self._range_faults()
         for name in (*SWITCHES, *EARTH_LINES):
             value = getattr(self, name)
             is_coast = name == COASTLINES and isinstance(value, Coast)
             if not (is_coast or isinstance(value, (bool, np.bool_, type(None)))):
                 faults.append(f"{name} is {brief(value)}; expected True or False")
-        if self.land is False or (isinstance(self.land, str) and self.land == "none"):
-            object.__setattr__(self, "land", None)
         raise_faults(faults + self._colour_faults())
 
-    def _check_range(self) -> list[str]:
-        """Replace ``clim`` by two numbers; return the faults of it and of the norm."""
+    def _range_faults(self) -> list[str]:
+        """Return the faults of the range and of the norm."""
         faults = []
-        clim = self.clim
-        if is_number(clim):  # as in PyVista
-            clim = (-clim, clim)
-        if clim is not None and not (isinstance(clim, str) and clim == ROBUST):
-            try:
-                low, high = map(float, clim)
-            except (TypeError, ValueError, OverflowError):
-                low = high = math.nan
-            if not (low < high and math.isfinite(low + high)):
-                faults.append(
-                    f"clim is {brief(self.clim)}; expected two numbers, (low, high), the lower one "
-                    f'first, or "{ROBUST}"'
-                )
-            elif not (isinstance(self.clim, tuple) and self.clim == (low, high)):
-                object.__setattr__(self, "clim", (low, high))
+        is_robust = isinstance(self.clim, str) and self.clim == ROBUST
+        if not (self.clim is None or is_robust or _is_range(self.clim)):
+            faults.append(
+                f"clim is {brief(self.clim)}; expected two numbers, (low, high), the lower one "
+                f'first, or "{ROBUST}"'
+            )
         if self.norm is None:
             return faults
         superfluous = None
@@ -257,7 +271,7 @@ class Appearance:
             changes = {"norm": None, **changes}
         if isinstance(self.cmap, str) and self.cmap == default_cmap(self.scalars):
             changes = {"cmap": None, **changes}
-        return replace(self, **changes)
+        return Appearance.of(**{**vars(self), **changes})
 
     @property
     def scalar_name(self) -> str | None:
@@ -269,22 +283,50 @@ class Appearance:
         return component_name(self.scalars, str(self.component))
 
 
+def _as_range(clim: Any) -> Any:
+    """Return two numbers, or the range around zero of one, as floats; anything else as it is."""
+    if clim is None or isinstance(clim, str):
+        return clim
+    limits = clim
+    if is_number(clim):  # as in PyVista
+        limits = (-clim, clim)
+    try:
+        low, high = map(float, limits)
+    except (TypeError, ValueError, OverflowError):
+        return clim
+    if not _is_range((low, high)):
+        return clim
+    return low, high
+
+
+def _is_range(clim: Any) -> bool:
+    """Return whether these are two finite numbers, the lower one first."""
+    if not isinstance(clim, tuple) or len(clim) != 2:
+        return False
+    low, high = clim
+    return bool(low < high and math.isfinite(low + high))
+
+
 #: Fields of the appearance that are attributes; a method changes the image.
-LIVE = tuple(name for name in Appearance.__dataclass_fields__ if name != "image")
+LIVE = tuple(name for name in option_names(Appearance) if name != "image")
 
 
-def _attribute(name: str) -> property:
-    """Return a property that reads and changes a field of the appearance of ``self.scene``."""
+class AppearanceAttribute:
+    """An attribute that reads and changes the field of the appearance that has its name."""
 
-    def get(self: AppearanceAttributes) -> Any:
-        return getattr(self.scene.appearance, name)
+    def __set_name__(self, owner: type, name: str) -> None:
+        self._name = name
+        self.__doc__ = Appearance.__dataclass_fields__[name].metadata["text"]
 
-    def change(self: AppearanceAttributes, value: Any) -> None:
-        if name == COASTLINES:
+    def __get__(self, instance: AppearanceAttributes | None, owner: type) -> Any:
+        if instance is None:
+            return self
+        return getattr(instance.scene.appearance, self._name)
+
+    def __set__(self, instance: AppearanceAttributes, value: Any) -> None:
+        if self._name == COASTLINES:
             value = as_coast(value)
-        self.scene.change({name: value})
-
-    return property(get, change, doc=Appearance.__dataclass_fields__[name].metadata["text"])
+        instance.scene.change({self._name: value})
 
 
 class AppearanceAttributes:
@@ -296,6 +338,26 @@ class AppearanceAttributes:
 
     scene: Any  #: A Scene; an attribute or a property of the class.
     _is_made = False
+
+    scalars = AppearanceAttribute()
+    component = AppearanceAttribute()
+    cmap = AppearanceAttribute()
+    clim = AppearanceAttribute()
+    log_scale = AppearanceAttribute()
+    norm = AppearanceAttribute()
+    n_colors = AppearanceAttribute()
+    flip_scalars = AppearanceAttribute()
+    nan_color = AppearanceAttribute()
+    below_color = AppearanceAttribute()
+    above_color = AppearanceAttribute()
+    color = AppearanceAttribute()
+    opacity = AppearanceAttribute()
+    visible = AppearanceAttribute()
+    lighting = AppearanceAttribute()
+    show_scalar_bar = AppearanceAttribute()
+    coastlines = AppearanceAttribute()
+    graticule = AppearanceAttribute()
+    land = AppearanceAttribute()
 
     def __init_subclass__(cls, **options: Any) -> None:
         super().__init_subclass__(**options)
@@ -334,10 +396,6 @@ class AppearanceAttributes:
         super().__setattr__(name, value)
 
 
-for _name in LIVE:
-    setattr(AppearanceAttributes, _name, _attribute(_name))
-
-
 @dataclass(frozen=True, kw_only=True)
 class ViewOptions:
     """The view of a flow, a second view beside it, and the background."""
@@ -365,6 +423,24 @@ class ViewOptions:
         '``"none"``; by default ticks if the surface is flat or a map.',
     )
 
+    @classmethod
+    def of(cls, **given: Any) -> ViewOptions:
+        """Return the view of arguments; the camera of a plotter is read.
+
+        Parameters
+        ----------
+        given
+            Fields of this class by name.
+
+        Raises
+        ------
+        FieldError
+            When a value is invalid.
+        """
+        if hasattr(given.get("camera"), "GetFocalPoint"):
+            given["camera"] = read_camera(given["camera"])
+        return cls(**given)
+
     def __post_init__(self) -> None:
         """Check values that nothing else checks."""
         if self.axes is not None and self.axes not in AXES:
@@ -373,8 +449,6 @@ class ViewOptions:
             )
         if self.background is not None:
             rgb(self.background)
-        if hasattr(self.camera, "GetFocalPoint"):
-            object.__setattr__(self, "camera", read_camera(self.camera))
         if not (self.beside is None or isinstance(self.beside, Mapping)):
             raise FieldError(
                 f"beside is {brief(self.beside)}; expected settings by name, such as "
@@ -455,32 +529,47 @@ class Options:
         SettingsError
             When no argument has the name; the error lists the nearest names.
         """
-        accepted = {name: tuple(vars(_KINDS[name]())) for name in kinds or _KINDS}
         if COASTLINES in values:
             values[COASTLINES] = as_coast(values[COASTLINES])
-        array: Any = values.get("scalars")
-        is_list = isinstance(array, (list, tuple))  # perhaps of rows of different lengths
-        if is_array := "field" in accepted and (is_list or np.ndim(array) > 0):
-            array = with_gaps("scalars", array)
-            values["scalars"] = DATA
+        accepted = kinds or tuple(_KINDS)
+        if "field" in accepted:
+            values = _with_data(values)
         parts: dict[str, Any] = {}
         known = list(TABLE)
         for kind_name, kind in _KINDS.items():
-            names = accepted.get(kind_name, ())
-            arguments = {name: values.pop(name) for name in names if name in values}
-            parts[kind_name] = kind(**arguments)
-            known += names
+            arguments = {}
+            if kind_name in accepted:
+                names = option_names(kind)
+                known += names
+                for name in (*names, *_INTERNAL.get(kind_name, ())):
+                    if name in values:
+                        arguments[name] = values.pop(name)
+            parts[kind_name] = kind.of(**arguments)
         for name in values:
             if name not in TABLE:
-                near = ""
-                if close := closest(name, known):
-                    near = f"did you mean {' or '.join(map(repr, close))}?"
-                axis = f"to select along an axis, use sel={{{name!r}: {brief(values[name])}}}"
-                near = near or f"help(flowtex.render) has all of them; {axis}"
-                raise SettingsError(f"the setting or argument {name!r} does not exist; {near}")
-        if is_array:  # which is read with the mesh, and is no argument of its own
-            object.__setattr__(parts["field"], ARRAY, array)
+                raise SettingsError(_unknown_argument(name, values[name], known))
         return cls(**parts, settings=values)
 
 
-_KINDS: dict[str, type] = {"field": FieldOptions, "appearance": Appearance, "view": ViewOptions}
+def _with_data(values: Mapping[str, Any]) -> dict[str, Any]:
+    """Return arguments of which scalars are a name; an array of them is read with the mesh."""
+    scalars: Any = values.get("scalars")
+    is_list = isinstance(scalars, (list, tuple))  # perhaps of rows of different lengths
+    if not is_list and np.ndim(scalars) == 0:
+        return dict(values)
+    return {**values, "scalars": DATA, "array": with_gaps("scalars", scalars)}
+
+
+def _unknown_argument(name: str, value: Any, known: Sequence[str]) -> str:
+    """Return the error for an argument that does not exist."""
+    if close := closest(name, known):
+        near = f"did you mean {' or '.join(map(repr, close))}?"
+    else:
+        axis = f"to select along an axis, use sel={{{name!r}: {brief(value)}}}"
+        near = f"help(flowtex.render) has all of them; {axis}"
+    return f"the setting or argument {name!r} does not exist; {near}"
+
+
+#: Fields of the option classes that are no arguments of their own.
+_INTERNAL = {"field": ("array",)}
+_KINDS: dict[str, Any] = {"field": FieldOptions, "appearance": Appearance, "view": ViewOptions}

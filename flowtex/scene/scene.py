@@ -30,7 +30,7 @@ from flowtex.field.dates import time_within
 from flowtex.field.derived.quantities import SIGNED, steps_of
 from flowtex.field.folds import FOLDED, mixes_at_folds
 from flowtex.field.interpolation import at_moment, steps_around
-from flowtex.field.options import FieldOptions
+from flowtex.field.options import FieldOptions, option_names
 from flowtex.field.steps import Steps
 from flowtex.rendering.cpu.shade import mean_colours
 from flowtex.rendering.structure import STRUCTURE, Structure, check_structure, shared_structure
@@ -73,7 +73,7 @@ class Scene:
         image: Floats32 | None = None,
     ) -> None:
         self.settings = settings or Settings()
-        self._appearance = appearance or Appearance()
+        self._appearance = appearance or Appearance.of()
         self._given = field  # without scalars that only the colours need
         self.field = with_scalars(field, self._appearance.scalar_name)
         self.image = image
@@ -120,7 +120,7 @@ class Scene:
             When the changes choose data, or cannot be drawn.
         """
         field_names = []
-        for name in FieldOptions.__dataclass_fields__:
+        for name in option_names(FieldOptions):
             if name in changes:
                 field_names.append(name)
         if field_names:

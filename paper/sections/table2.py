@@ -60,7 +60,7 @@ def _frame_times(bench: Bench, field: FlowField, slices: Any) -> dict[str, float
     plotter: Any = pv.Plotter(off_screen=True, window_size=list(PICTURE_SIZE))
     try:
         plotter.disable_anti_aliasing()
-        grey = Appearance(scalars=False, color="grey")
+        grey = Appearance.of(scalars=False, color="grey")
         scene = Scene(field, bench.settings(**PAPER), grey, slices=slices)
         point_camera(plotter, field.surface)
         plotter.render()

@@ -17,7 +17,7 @@ from PIL import Image
 
 from flowtex import examples
 from flowtex.cli import main
-from flowtex.field.options import FieldOptions
+from flowtex.field.options import FieldOptions, option_names
 from flowtex.rendering import diagnostics
 from flowtex.scene.options import Appearance, ViewOptions
 from flowtex.settings import TABLE
@@ -113,7 +113,7 @@ def test_every_setting_and_option_is_a_flag_with_its_sentence(run: Run) -> None:
             assert f"--no-{row.name.replace('_', '-')}" in out
     for kind in (FieldOptions, Appearance, ViewOptions):
         # A file has its own times, and slices are no text.
-        for name in set(kind.__dataclass_fields__) - {"times", "slices"}:
+        for name in set(option_names(kind)) - {"times", "slices"}:
             assert f"--{name.replace('_', '-')}" in out
     for words in ("1 is opaque, 0 invisible", "[default: 1.0]", "--no-lighting"):
         assert words in out

@@ -50,7 +50,7 @@ def card(page: Page) -> dict[str, str]:
 @pytest.mark.parametrize("name", PATHS)
 def test_the_path_is_that_of_the_renderer(client: ClientPage, name: str) -> None:
     field, camera, chosen = PATHS[name]
-    scene = Scene(field, Settings(samples=21), Appearance(image=IMAGE))
+    scene = Scene(field, Settings(samples=21), Appearance.of(image=IMAGE))
     scene.settings.update(**chosen)
     data = ClientData(scene.textures, Colours(plain=(0.6, 0.6, 0.6)))
     header = data.header(scene.settings, camera=state(camera))

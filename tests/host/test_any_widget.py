@@ -22,6 +22,7 @@ from strategies import property_test
 from waiting import PATIENCE_S
 
 from flowtex.errors import FieldError, Notice
+from flowtex.field.options import option_names
 from flowtex.host.view import first_parts
 from flowtex.scene.options import Appearance
 from flowtex.settings import TABLE, SettingsError
@@ -142,7 +143,7 @@ class AnyWidget(RuleBasedStateMachine):
     def new_widget(self) -> FlowWidget:
         """Return a new widget in the same state."""
         widget, look = self.widget, self.widget.scene.appearance
-        options = {name: getattr(look, name) for name in vars(Appearance())}
+        options = {name: getattr(look, name) for name in option_names(Appearance)}
         settings = {name: getattr(widget, name) for name in TABLE}
         new = FlowWidget(FLOWS[self.name](), **options, **settings, camera=dict(widget.camera))
         new.time, new.clock = widget.time, widget.clock

@@ -109,7 +109,7 @@ class Shown:
 
     def __init__(self, plotter: Any, name: str, place: float, *, first: bool) -> None:
         self.name, self.place = name, place
-        self.look = Appearance(show_scalar_bar=False)
+        self.look = Appearance.of(show_scalar_bar=False)
         self.settings = Settings()
         self.image: Any = None
         self.handle = plotter.flowtex.add(FLOWS[name](), show_scalar_bar=False, reset_camera=first)

@@ -139,7 +139,7 @@ def test_four_nodes_are_drawn_by_time_also_at_rest() -> None:
 def test_a_ring_of_two_lines_has_image_coordinates() -> None:
     x, y = np.meshgrid([0.0, 1.0, 0.0], np.arange(4.0))
     points = np.stack([x, y], axis=-1)
-    look = Appearance(image=np.ones((2, 2)))
+    look = Appearance.of(image=np.ones((2, 2)))
     check_picture(Scene(field_from(points, periodic="i"), Settings(noise="image"), look))
 
 

@@ -16,7 +16,7 @@ from strategies import junk, property_test
 
 import flowtex
 from flowtex.errors import FieldError
-from flowtex.field.options import FieldOptions
+from flowtex.field.options import FieldOptions, option_names
 from flowtex.scene.fields import read_field
 from flowtex.scene.options import Appearance, Options, ViewOptions
 from flowtex.scene.scene import Scene, follow, lay_image, make_scenes
@@ -25,7 +25,7 @@ from flowtex.scene.scene import Scene, follow, lay_image, make_scenes
 def test_each_argument_goes_where_it_belongs() -> None:
     options = Options.split(plane="k=2", cmap="magma", zoom=3, samples=7)
     assert options.field == FieldOptions(plane="k=2")
-    assert vars(options.appearance) == vars(Appearance(cmap="magma"))
+    assert vars(options.appearance) == vars(Appearance.of(cmap="magma"))
     assert options.view == ViewOptions(zoom=3)
     assert options.settings == {"samples": 7}
 
@@ -38,7 +38,7 @@ def test_signature_and_docstring_show_every_option(function: Any) -> None:
     parameters = inspect.signature(function).parameters
     lines = {line.strip() for line in inspect.getdoc(function).splitlines()}  # type: ignore[union-attr]
     for kind in (FieldOptions, Appearance, ViewOptions):
-        for name in kind.__dataclass_fields__:
+        for name in option_names(kind):
             assert name in parameters
             assert name in lines
     assert "{options}" not in lines
@@ -117,4 +117,4 @@ def test_a_view_of_nothing_is_warned_of(view: dict[str, Any]) -> None:
 
 
 def test_no_land_has_two_names() -> None:
-    assert Appearance(land="none").land is None and Appearance(land=False).land is None
+    assert Appearance.of(land="none").land is None and Appearance.of(land=False).land is None

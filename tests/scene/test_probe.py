@@ -55,7 +55,7 @@ def view_of(field: FlowField, **settings: Any) -> Scene:
     chosen = Settings()
     image = settings.pop("image", None)
     chosen.update(**settings)
-    return Scene(field, chosen, Appearance(image=image))
+    return Scene(field, chosen, Appearance.of(image=image))
 
 
 SIZE = (36, 24)  #: Width and height of the pictures in pixels.

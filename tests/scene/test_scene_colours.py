@@ -112,14 +112,14 @@ def test_the_range_of_a_large_surface_is_of_the_speed_along_it() -> None:
 
 def test_signed_values_have_a_diverging_map_until_another_is_chosen() -> None:
     field = flowtex.examples.double_gyre_field(shape=(11, 21))
-    scene = Scene(field, appearance=Appearance(scalars="vorticity"))
+    scene = Scene(field, appearance=Appearance.of(scalars="vorticity"))
     low, high = scene.scalar_limits
     assert scene.appearance.cmap == "RdBu_r" and low == -high
     looks = [scene.appearance.changed(scalars=name) for name in ("speed", "divergence", False)]
     assert [look.cmap for look in looks] == ["viridis", "RdBu_r", "viridis"]
-    chosen = Appearance(scalars="vorticity", cmap="magma")
+    chosen = Appearance.of(scalars="vorticity", cmap="magma")
     assert chosen.changed(scalars="speed").cmap == "magma"
-    assert Appearance(scalars="vorticity", cmap="viridis").cmap == "viridis"
+    assert Appearance.of(scalars="vorticity", cmap="viridis").cmap == "viridis"
 
 
 def test_zero_is_in_the_middle_of_a_vorticity_of_one_sign() -> None:

@@ -170,7 +170,7 @@ def test_appearance_reads_no_files(tmp_path: Path) -> None:
     """Pages and links change an appearance, and must not name files of the server."""
     path = written(tmp_path, feature("LineString", LINE))
     with pytest.raises(FieldError, match="expected True or False"):
-        Appearance(coastlines=str(path))
+        Appearance.of(coastlines=str(path))
 
 
 def test_web_page_and_widget_take_the_lines(tmp_path: Path) -> None:

@@ -173,7 +173,7 @@ def test_other_arguments_of_arrays_are_refused() -> None:
         with pytest.raises(FieldError, match=r"direction is 'angle'(;|, but .* no names)"):
             read(*arrays, direction="angle")
     with pytest.raises(FieldError, match=r"u is array.*; expected the name of an array. Pass"):
-        FieldOptions(u=U, v=V)  # type: ignore[arg-type]
+        FieldOptions.of(u=U, v=V)
     with pytest.raises(
         FieldError, match=r"two arrays of the shape .* may be u and v, or positions"
     ):
@@ -206,7 +206,7 @@ def test_speed_and_direction_are_components(word: str, form: str) -> None:
         options |= {"vectors": "ff", "direction": "dd"}
     if form == "velocity alone":
         data = speed
-    field = read_field(data, FieldOptions(**options))
+    field = read_field(data, FieldOptions.of(**options))
     np.testing.assert_allclose(field.velocity[..., 0].squeeze(), u, atol=1e-12)
     np.testing.assert_allclose(field.velocity[..., 1].squeeze(), v, atol=1e-12)
 
@@ -214,7 +214,7 @@ def test_speed_and_direction_are_components(word: str, form: str) -> None:
 def test_meaning_of_a_direction_is_reported_unless_named() -> None:
     speed, angle = np.ones((4, 5)), np.full((4, 5), 30.0)
     with pytest.warns(Notice, match='counterclockwise from x, .*components="to".*"from"') as told:
-        read_field(speed, FieldOptions(direction=angle))
+        read_field(speed, FieldOptions.of(direction=angle))
     assert len(told) == 1
 
 
@@ -228,4 +228,4 @@ def test_meaning_of_a_direction_is_reported_unless_named() -> None:
 )
 def test_direction_that_does_not_fit_raises(options: dict[str, Any], told: str) -> None:
     with pytest.raises(FieldError, match=told):
-        read_field(np.ones((4, 5)), FieldOptions(**options))
+        read_field(np.ones((4, 5)), FieldOptions.of(**options))

@@ -336,7 +336,7 @@ def _source_of(flow: Any, options: dict[str, Any]) -> FlowSource:
         return DatasetSource(flow)
     if isinstance(flow, FlowField) or not given:
         return MeshSource(flow)
-    return MeshSource(read_field(flow, FieldOptions(**given)))
+    return MeshSource(read_field(flow, FieldOptions.of(**given)))
 
 
 def _constant(source: FlowSource) -> Opener:

@@ -41,7 +41,7 @@ from flowtex.sources.opening.dataset_files import is_dataset_file
 DEFAULTS: dict[str, Any] = {
     "clock": 0.0,
     "colour": "speed",
-    **look_shown(Look()),
+    **look_shown(Look.of()),
     "theme": "dark",
     "background": BACKGROUNDS[0],
     "split": "nothing",

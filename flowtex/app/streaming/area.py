@@ -24,7 +24,7 @@ from flowtex.app.streaming.stream import FrameStream
 from flowtex.app.streaming.viewport import Viewport
 from flowtex.errors import FieldError
 from flowtex.field import FlowField
-from flowtex.field.options import FieldOptions
+from flowtex.field.options import FieldOptions, option_names
 from flowtex.host.view import client_module, is_choice
 from flowtex.plotting.handle import FlowHandle
 from flowtex.rendering.camera import Camera, CameraError
@@ -92,8 +92,8 @@ class FlowArea(AppearanceAttributes):
     ) -> None:
         self.server = server
         self.state = state or PageState(server)
-        names = FieldOptions.__dataclass_fields__
-        self._reading = FieldOptions(**{k: options.pop(k, None) for k in names})
+        names = option_names(FieldOptions)
+        self._reading = FieldOptions.of(**{k: options.pop(k, None) for k in names})
         self._axes = ViewOptions(axes=options.pop("axes", None)).axes
         self.viewport = Viewport(read_field(flow, self._reading), **options)
         self.stream = FrameStream(self.state.key("view"), self.viewport)

@@ -404,7 +404,7 @@ class FlowImage(AxesImage):
         """Draw the scalars with another colour map, by its name or a colour map of matplotlib."""
         if self._scene.scalar_name is None:
             return
-        self._scene.appearance = replace(self._scene.appearance, cmap=cmap)
+        self._scene.appearance = self._scene.appearance.changed(cmap=cmap)
         super().set_cmap(self._bar_colours())
 
     def _follow_scales(self, scales: AxesScales | None) -> None:

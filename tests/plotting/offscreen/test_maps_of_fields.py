@@ -159,6 +159,18 @@ def test_a_series_and_its_scalars_are_put_on_another_map() -> None:
         assert got == pytest.approx(wanted, rel=1e-3, abs=0.02)
 
 
+def test_an_array_colours_a_dataset_on_axes_of_a_map() -> None:
+    """The axes set the projection of the dataset, and the array comes along."""
+    data = winds(*REGION)
+    warmth = np.add.outer(REGION[1], 2.0 * REGION[0])
+    for name in ("PlateCarree", "Mercator"):
+        image, _ = shown(AXES[name], data, scalars=warmth)
+        assert image.get_clim() == (warmth.min(), warmth.max())
+        found = image.flow.at(-61.0, 33.0)
+        assert found is not None
+        assert found.scalars["Data"] == pytest.approx(33.0 - 2 * 61.0, abs=0.05)
+
+
 def test_fields_without_a_place_on_the_earth_are_refused() -> None:
     x, y = np.meshgrid(*REGION)
     field = FlowField.from_arrays(np.stack([x, y], axis=-1), np.ones((*x.shape, 2)))

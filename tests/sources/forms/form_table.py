@@ -68,7 +68,7 @@ def read(data: Any, **options: Any) -> FlowField:
     """Read data as ``flowtex.render`` does, without its notices."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", UserWarning)
-        return read_field(data, FieldOptions(**options))
+        return read_field(data, FieldOptions.of(**options))
 
 
 def data_of(one: Form, folder: Path) -> tuple[Any, Truth | None]:

@@ -33,7 +33,7 @@ def noticed(data: Any, **options: Any) -> tuple[FlowField, list[Notice]]:
     """Read data, and return the field and all notices."""
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
-        field = read_field(data, FieldOptions(**options))
+        field = read_field(data, FieldOptions.of(**options))
     notices = [each.message for each in caught if isinstance(each.message, Notice)]
     return field, notices
 
