@@ -7,8 +7,9 @@ from contextlib import suppress
 from typing import TYPE_CHECKING, Any
 
 from flowtex._util.arguments import checked_size
+from flowtex._util.pyvista_internals import named_backend
 from flowtex.errors import FieldError, require_pyvista
-from flowtex.field.options import FieldOptions, accepts_options
+from flowtex.field.options import FieldOptions, accepts_options, option_names
 from flowtex.scene.array_arguments import takes_arrays
 from flowtex.scene.fields import read_field
 from flowtex.scene.options import Appearance, Options, ViewOptions
@@ -115,7 +116,7 @@ def _show_page(mesh: Any, size: tuple[int, int] | None, options: dict[str, Any])
     field = read_field(mesh, Options.split(**options).field)
     from flowtex.app import serve
 
-    for name in FieldOptions.__dataclass_fields__:
+    for name in option_names(FieldOptions):
         options.pop(name, None)
     serve(field, **options)
 
@@ -134,7 +135,7 @@ def show_plotter(plotter: Any, *, screenshot: Any = None, **options: Any) -> Any
     ModuleNotFoundError
         When the chosen ``jupyter_backend`` is another one whose package is missing.
     """
-    named = _named_backend()
+    named = named_backend(BACKEND)
     if named is None:
         return _show_as_pyvista(plotter, screenshot, options)
     if named != BACKEND:
@@ -174,19 +175,3 @@ def _show_widget(plotter: Any, screenshot: Any, options: dict[str, Any]) -> Flow
         plotter.render()
         widget.set_still(plotter.screenshot(return_img=True))
     return widget
-
-
-def _named_backend() -> str | None:
-    """Return the backend that the user or the theme has named, which only frames of callers tell.
-
-    Without a ``plotter.show`` among the callers this backend was called by its name.
-    """
-    frame = sys._getframe(1)
-    while (caller := frame.f_back) is not None:
-        frame = caller
-        if frame.f_code.co_name == "show" and "jupyter_backend" in frame.f_locals:
-            named = frame.f_locals["jupyter_backend"]
-            if named is None:
-                return None
-            return str(named).lower()
-    return BACKEND

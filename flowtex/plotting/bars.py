@@ -11,6 +11,7 @@ import pyvista as pv
 
 from flowtex._util.array_types import Bytes, Indices
 from flowtex._util.colours import ZERO_SHARE, rounded_ends
+from flowtex._util.pyvista_internals import mappers_of_bar, set_range_of_bar
 from flowtex.plotting.bar_layout import END_LABELS, first_arguments, place_bar
 from flowtex.rendering.vtk.flow_mapper import Ends, FlowMapper, NormTable
 
@@ -41,8 +42,7 @@ class FlowBar:
     @property
     def _sharing(self) -> list[Any]:
         """Mappers that share the bar, also those of PyVista's meshes."""
-        sharing: list[Any] = self._bars._scalar_bar_mappers.get(self.key, [])
-        return sharing
+        return mappers_of_bar(self._bars, self.key)
 
     def show(self, name: str, title: str) -> None:
         """Show the colours of a scalar, in the bar of others or in one of its own."""
@@ -91,7 +91,7 @@ class FlowBar:
             return False
         if not self._renderer.HasViewProp(bar):
             return False
-        mappers = self._bars._scalar_bar_mappers[key]
+        mappers = mappers_of_bar(self._bars, key)
         return all(_same_colours(self._mapper, mapper) for mapper in mappers)
 
     def fit(self) -> None:
@@ -166,7 +166,7 @@ class FlowBar:
         """Leave the bar, and remove it if no other shares it."""
         key = self.key
         self.key = None
-        sharing = self._bars._scalar_bar_mappers.get(key, [])
+        sharing = mappers_of_bar(self._bars, key)
         if self._mapper in sharing:
             sharing.remove(self._mapper)
         if key in self._bars and not sharing:
@@ -178,7 +178,7 @@ class FlowBar:
 
 def _fit_range(bars: Any, key: str | None) -> None:
     """Give all that share a bar the limits chosen for some, or the range of all values."""
-    sharing = bars._scalar_bar_mappers[key]
+    sharing = mappers_of_bar(bars, key)
     ends = list(map(_ends, sharing))
     chosen = [each for each in ends if each.are_chosen]
     limits = _joined(each.limits for each in chosen or ends)
@@ -186,7 +186,7 @@ def _fit_range(bars: Any, key: str | None) -> None:
         mapper.scalar_range = limits
         if isinstance(mapper, FlowMapper):
             mapper.fitted_with = _identities(sharing)
-    bars._scalar_bar_ranges[key] = limits
+    set_range_of_bar(bars, key, limits)
 
 
 def _identities(mappers: Iterable[Any]) -> tuple[int, ...]:

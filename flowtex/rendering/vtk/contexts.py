@@ -15,10 +15,10 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any
 
-import pyvista as pv
 from vtkmodules.vtkRenderingOpenGL2 import vtkOpenGLRenderWindow
 
 from flowtex._util.forks import call_at_fork, renew_after_fork
+from flowtex._util.pyvista_internals import abandon, open_plotters
 from flowtex.rendering.diagnostics import OpenGLMissingError
 
 #: Threads that drew the last frames of windows.
@@ -49,14 +49,10 @@ def note_thread(window: vtkOpenGLRenderWindow | None) -> None:
         _threads[window] = threading.get_ident()
 
 
-def _plotters() -> list[Any]:
-    """Return PyVista's open plotters: also those without a flow keep the driver's threads."""
-    return list(getattr(pv.plotting.plotter, "_ALL_PLOTTERS", {}).values())
-
-
 def _windows() -> Iterator[vtkOpenGLRenderWindow]:
     """Yield the windows that have a context."""
-    windows: list[Any] = [plotter.render_window for plotter in _plotters()]
+    # Also plotters without a flow keep threads of the driver.
+    windows: list[Any] = [plotter.render_window for plotter in open_plotters()]
     candidates: dict[int, Any] = {id(window): window for window in [*_threads, *windows]}
     for window in candidates.values():
         if isinstance(window, vtkOpenGLRenderWindow) and window.GetInitialized():
@@ -77,10 +73,9 @@ def _keep_inherited() -> None:
     for window in _windows():
         window.Register(None)  # type: ignore[arg-type]
         _inherited.append(window)
-    for plotter in _plotters():
+    for plotter in open_plotters():
         if plotter.render_window in _inherited:
-            plotter.ren_win = None
-            plotter._closed = True
+            abandon(plotter)
 
 
 #: Longest wait in seconds for frames of other threads when the interpreter ends.
