@@ -25,6 +25,7 @@ class Rates:
     def __init__(self, formula: Formula, time: float) -> None:
         self._formula = formula
         self._time = time
+        self._names = tuple(formula.ranges)
         self.ends = np.array(list(formula.ranges.values()))
         self._values = formula.parameter_values | {"t": time}
         self.trees, self._tangents = rate_trees(formula)
@@ -81,7 +82,9 @@ class Rates:
 
     def _of(self, program: Program, places: Floats) -> Floats:
         """Return the values of trees, (N, number of trees)."""
-        values = self._values | dict(zip(self._formula.ranges, places.T, strict=True))
+        values = self._values.copy()
+        for k, name in enumerate(self._names):
+            values[name] = places[:, k]
         with np.errstate(all="ignore"):
             columns = program(values)
         result = np.empty((len(places), len(columns)))

@@ -339,16 +339,16 @@ def formula_paths(
     """Follow lines from (N, 2), as (i, j) of nodes, to lengths (M,), as :func:`paths` does."""
     low = rates.ends[:, 0]
     sides = np.ptp(rates.ends, axis=1)
+    middle = low + sides / 2
     cell = sides / np.subtract(shape[::-1], 1)
+    sign = 1.0
+    if not forward:
+        sign = -1.0
 
     def rate(at: Floats) -> Floats:
         value = rates.at(at)
-        with np.errstate(invalid="ignore", divide="ignore"):
-            if forward:
-                sign = 1.0
-            else:
-                sign = -1.0
-            return np.asarray(sign * value / np.linalg.norm(value, axis=1, keepdims=True))
+        speed = np.hypot(value[:, 0], value[:, 1])
+        return np.asarray(value / (sign * speed)[:, None])
 
     at = low + begin * cell
     before = 0.0
@@ -361,9 +361,9 @@ def formula_paths(
         count = int(np.ceil((lag - before) / (STEP * np.hypot(*sides))))
         for k in range(count):
             going = np.flatnonzero(np.isinf(reach))
-            ahead = runge_kutta(rate, at[going], (lag - before) / count)
-            with np.errstate(invalid="ignore"):
-                is_inside = (np.abs(ahead - low - sides / 2) <= sides / 2).all(axis=1)
+            with np.errstate(invalid="ignore", divide="ignore"):
+                ahead = runge_kutta(rate, at[going], (lag - before) / count)
+                is_inside = (np.abs(ahead - middle) <= sides / 2).all(axis=1)
             at[going[is_inside]] = ahead[is_inside]
             reach[going[~is_inside]] = before + (lag - before) * k / count
         positions[n] = (at - low) / cell
