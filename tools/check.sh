@@ -84,8 +84,7 @@ all)
     (tests -n "$(workers "$bin")" -m browser "$@") >"$logs/browser" 2>&1 &
     browser=$!
     aside="$aside $browser"
-    # One process more than cores, as many of these tests wait for servers and files.
-    tests -n $(($(workers "$bin") + 1)) -m "not browser" "$@" || failed="$failed, tests"
+    tests -n "$(workers "$bin")" -m "not browser" "$@" || failed="$failed, tests"
     ended $browser "tests with a browser" browser
     ;;
 fast) tests -n "$(workers "$bin")" -m "$fast" "$@" || failed="$failed, tests" ;;
