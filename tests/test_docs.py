@@ -77,7 +77,7 @@ def small_examples() -> dict[str, Any]:
     """Examples with every second or third point, and some of their instants."""
     pytest.importorskip("xarray")
     examples = flowtex.examples
-    few = {dim: slice(None, None, 3) for dim in ("longitude", "latitude", "lon", "lat")}
+    few = {dim: slice(None, None, 5) for dim in ("longitude", "latitude", "lon", "lat")}
     return {
         "airfoil": fewer(examples.airfoil()),
         "cylinder_series": [fewer(mesh) for mesh in examples.cylinder_series()[::10]],
@@ -195,7 +195,7 @@ def test_the_blocks_of_a_page_run(
         defaults = {**(draws.__kwdefaults__ or {}), "size": (160, 120)}
         monkeypatch.setattr(draws, "__kwdefaults__", defaults)
     monkeypatch.setattr(flowtex, "show", flowtex.render, raising=False)
-    few = (9, *flowtex.Settings.__init__.__defaults__[1:])  # type: ignore[index]
+    few = (5, *flowtex.Settings.__init__.__defaults__[1:])  # type: ignore[index]
     monkeypatch.setattr(flowtex.Settings.__init__, "__defaults__", few)
     monkeypatch.setitem(flowtex.formula.__kwdefaults__ or {}, "resolution", 97)
     for name, shape in (("airfoil_field", (33, 97)), ("double_gyre_field", (33, 65))):

@@ -22,7 +22,7 @@ CHANGES: dict[str, dict[str, str]] = {
 }
 NOTEBOOKS = sorted(FOLDER.glob("*.ipynb"), key=lambda path: (path.stem in CHANGES, path.stem))
 #: Run by the kernel as it starts: small pictures of widgets that no browser draws, coarse grids of
-#: formulas, few samples, and every third point and time of the examples.
+#: formulas, few samples, and every fifth point and time of the examples.
 LESS = """import inspect
 import flowtex
 import flowtex.host.export
@@ -33,10 +33,10 @@ flowtex.formula.__kwdefaults__["resolution"] = 97
 for draws in (flowtex.render, flowtex.movie):
     inspect.unwrap(draws).__kwdefaults__["size"] = (160, 120)
 made = flowtex.Settings.__init__
-made.__defaults__ = (9, *made.__defaults__[1:])
+made.__defaults__ = (5, *made.__defaults__[1:])
 for name in ("ocean", "weather"):
     data = getattr(flowtex.examples, name)()
-    few = {dim: slice(None, None, 3) for dim in data.dims if dim != "level"}
+    few = {dim: slice(None, None, 5) for dim in data.dims if dim != "level"}
     setattr(flowtex.examples, name, lambda data=data.isel(few): data)
 """
 SMALL_ROOTS = "from flowtex.textures.tiles import grid_levels\ngrid_levels.ROOT_NODES = 20_000"
