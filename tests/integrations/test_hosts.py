@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 from lab import wait_for_kernel
-from waiting import PATIENCE_S, wait_until, wait_until_served
+from waiting import HOST_PATIENCE_S, wait_until, wait_until_served
 
 if TYPE_CHECKING:
     from playwright.sync_api import Page
@@ -110,17 +110,18 @@ def served(host: str, folder: Path) -> Iterator[str]:
             command, cwd=folder, env=environment, stdout=said, stderr=subprocess.STDOUT
         )
     try:
-        wait_until_served(address, process, log.read_text)
+        wait_until_served(address, process, log.read_text, HOST_PATIENCE_S)
         yield address
     finally:
         process.terminate()
-        process.wait(PATIENCE_S)
+        process.wait(HOST_PATIENCE_S)
 
 
 @pytest.mark.parametrize("host", WIDGETS)
 def test_a_host_shows_a_flow_that_can_be_moved(page: Page, host: str, tmp_path: Path) -> None:
     if find_spec(host) is None:
         pytest.skip(f"{host} is not installed: make integrations")
+    page.set_default_timeout(1000 * HOST_PATIENCE_S)
     with served(host, tmp_path) as address:
         page.goto(address)
         if host == "notebook":
@@ -139,7 +140,7 @@ def test_a_host_shows_a_flow_that_can_be_moved(page: Page, host: str, tmp_path: 
         page.mouse.down()
         page.mouse.move(x + 50, y, steps=4)
         page.mouse.up()
-        wait_until(lambda: canvas.screenshot() != was)
+        wait_until(lambda: canvas.screenshot() != was, limit=HOST_PATIENCE_S)
         if host not in FRAMED:
             heard = tmp_path / "heard.json"
 
@@ -149,7 +150,7 @@ def test_a_host_shows_a_flow_that_can_be_moved(page: Page, host: str, tmp_path: 
                     return float(json.loads(heard.read_text())["focal_point"][0]) < 0.95
                 return False
 
-            wait_until(moved)
+            wait_until(moved, (tmp_path / "log.txt").read_text, HOST_PATIENCE_S)
 
 
 #: Width of what Bokeh's picture shows; null before there is one.
@@ -161,6 +162,7 @@ SHOWN = (
 
 def test_a_plot_of_holoviews_is_drawn_again_for_what_it_shows(page: Page, tmp_path: Path) -> None:
     pytest.importorskip("holoviews", reason="make integrations")
+    page.set_default_timeout(1000 * HOST_PATIENCE_S)
     with served("holoviews", tmp_path) as address:
         page.goto(address)
         page.wait_for_function(f"({SHOWN})() !== null")

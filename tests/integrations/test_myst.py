@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
-from waiting import PATIENCE_S, wait_until
+from waiting import HOST_PATIENCE_S, wait_until
 
 import flowtex
 
@@ -49,7 +49,7 @@ def test_a_static_site_shows_a_flow_that_can_be_moved(page: Page, tmp_path: Path
         cwd=tmp_path,
         env={**os.environ, "PATH": f"{programs}{os.pathsep}{os.environ['PATH']}"},
         check=True,
-        timeout=PATIENCE_S,
+        timeout=HOST_PATIENCE_S,
     )
     site = tmp_path / "_build" / "html"
     asked = []
@@ -58,6 +58,7 @@ def test_a_static_site_shows_a_flow_that_can_be_moved(page: Page, tmp_path: Path
         asked.append(route.request.url.removeprefix("http://site.test/"))
         route.fulfill(path=site / asked[-1])
 
+    page.set_default_timeout(1000 * HOST_PATIENCE_S)
     page.route("**/*", give)
     page.goto("http://site.test/index.html")
     page.locator('.flowtex[data-sharp="true"]').nth(1).wait_for()
@@ -74,4 +75,4 @@ def test_a_static_site_shows_a_flow_that_can_be_moved(page: Page, tmp_path: Path
     page.mouse.down()
     page.mouse.move(650, 120, steps=4)
     page.mouse.up()
-    wait_until(lambda: canvas.screenshot() != was)
+    wait_until(lambda: canvas.screenshot() != was, limit=HOST_PATIENCE_S)
