@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+from typing import Any
 
 import numpy as np
 
@@ -82,7 +83,7 @@ class Rates:
 
     def _of(self, program: Program, places: Floats) -> Floats:
         """Return the values of trees, (N, number of trees)."""
-        values = self._values.copy()
+        values: dict[str, Any] = dict(self._values)
         for k, name in enumerate(self._names):
             values[name] = places[:, k]
         with np.errstate(all="ignore"):
