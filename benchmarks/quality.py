@@ -2,10 +2,11 @@
 
 Sections are ``zoom`` (streaks and grain from the whole surface to a thousandth of it, beside
 rlic on the image's own grid), ``aliasing`` (against 16 samples a pixel), ``camera`` (texture that
-sticks to the surface, beside VTK's Surface LIC), ``cloud`` (evenness on the surfaces of
-surfaces.py, beside Surface LIC), ``popping`` (a slow zoom), ``motion`` and
-``vortices`` (frames carried by the flow), and ``seam`` (joined lines of nodes; needs
-``FLOWTEX_DATA``). All with the settings' defaults. ``--json FILE`` keeps the figures.
+sticks to the surface, beside VTK's Surface LIC), ``cloud`` (evenness on a globe and the surfaces
+of surfaces.py, beside Surface LIC), ``colours`` (of a map under the texture, beside Surface LIC),
+``popping`` (a slow zoom), ``motion`` and ``vortices`` (frames carried by the flow), and ``seam``
+(joined lines of nodes; needs ``FLOWTEX_DATA``). All with the settings' defaults. ``--json FILE``
+keeps the figures.
 
 ``--judge FILE`` takes another judge of streaks, grain, aliasing and motion instead of
 :mod:`flowtex.quality`: a module with the functions alignment, grain, aliasing and carried.
@@ -23,7 +24,8 @@ from typing import Any
 import numpy as np
 from rich.console import Console
 from rich.table import Table
-from scenes import Stage, gyre_field, gyre_view, vortex_view
+from scenes import Stage, colour_lic, grid_of, gyre_field, gyre_view, lic_actor, vortex_view
+from scipy.ndimage import gaussian_filter
 from seams import across_lines, seams
 
 import flowtex
@@ -43,6 +45,11 @@ JUDGE = SimpleNamespace(
     carried=quality.sticking,
 )
 CLOUD_NODES = 20_000  #: Nodes of the surfaces of which clouds are measured.
+CLOUD_SIZE = (640, 480)  #: Pixels of their pictures.
+CLOUD_NOISES = 8  #: Pictures of each.
+CLOUD_MOVE = 5.0  #: Pixels from one to the next.
+COLOUR_MAPS = ("viridis", "RdBu_r", "turbo", "magma", "cividis")
+NEAR_WHITE = 230  #: Least value of the channels of a pixel that looks white.
 #: Seconds from one frame of an animation to the next.
 FRAME = 1 / 30
 
@@ -76,35 +83,110 @@ def _all(picture: Any, view: Any) -> dict[str, float]:
 
 
 def clouds() -> Figures:
-    """Evenness on planes and bodies, without light; Surface LIC at the same views."""
-    import pyvista as pv
-    from peers import CASES, LIC, OURS
-    from surfaces import GRIDS, TRIANGLES, surface_view
+    """Evenness on planes, bodies and a globe, without light; Surface LIC at the same views.
 
-    from flowtex.rendering.camera import read_camera
+    Each figure is a mean over some noises, as a small surface has few grains: those of flowtex
+    have other seeds, and the view moves a little, because Surface LIC's stay on the screen.
+    """
+    from peers import LIC, OURS
+    from surfaces import GRIDS, TRIANGLES
 
     found: Figures = {}
-    size = (640, 480)
     for name, make in (GRIDS | TRIANGLES).items():
         mesh = make(CLOUD_NODES)
-        for case in (OURS, LIC):
-            plotter: Any = pv.Plotter(off_screen=True, window_size=list(size))
-            plotter.set_background("white")
-            CASES[case](plotter, mesh)
-            for actor in plotter.renderer.GetActors():  # shadows are no clouds
-                actor.GetProperty().SetAmbient(1.0)
-                actor.GetProperty().SetDiffuse(0.0)
-            flat = np.ptp(mesh.points[:, 2]) == 0
-            plotter.camera_position = "xy" if flat else "iso"
-            plotter.reset_camera(render=False)
-            plotter.render()
-            picture = np.asarray(plotter.screenshot(return_img=True))
-            camera = read_camera(plotter.camera)
-            view = surface_view(flowtex.FlowField.from_pyvista(mesh), camera, size)
-            plotter.close()
-            streaks = JUDGE.streaks(picture, view.u, view.v, view.mask)
-            found[f"{name}, {case}"] = {**streaks, "cloud": quality.cloud(picture, view.mask)}
+        field = flowtex.FlowField.from_pyvista(mesh)
+        found[f"{name}, {OURS}"] = _evenness(field)
+        found[f"{name}, {LIC}"] = _evenness(field, mesh)
+    globe = flowtex.FlowField.from_xarray(flowtex.examples.weather(), level=250, globe=True)
+    found[f"globe, {OURS}"] = _evenness(globe)
+    found[f"globe, {LIC}"] = _evenness(globe, grid_of(globe))
     return found
+
+
+def _evenness(field: flowtex.FlowField, mesh: Any = None) -> dict[str, float]:
+    """Measure pictures of a field, or of its mesh by Surface LIC."""
+    import pyvista as pv
+    from camera_moves import pan
+    from surfaces import surface_view
+
+    from flowtex.rendering.camera import apply_camera, read_camera
+
+    plotter: Any = pv.Plotter(off_screen=True, window_size=list(CLOUD_SIZE))
+    plotter.set_background("white")
+    if mesh is None:
+        options: dict[str, Any] = {}
+        if field.projection is not None:
+            options = {"coastlines": False, "graticule": False}
+        settings = plotter.flowtex.add(field, scalars=False, **options).settings
+    else:
+        settings = SimpleNamespace()
+        plotter.add_actor(lic_actor(mesh.extract_surface(algorithm="dataset_surface")))
+    for actor in plotter.renderer.GetActors():  # shadows are no clouds
+        actor.GetProperty().SetAmbient(1.0)
+        actor.GetProperty().SetDiffuse(0.0)
+    flat = np.ptp(field.points[..., 2]) == 0
+    plotter.camera_position = "xy" if flat else "iso"
+    plotter.reset_camera(render=False)
+    middle = read_camera(plotter.camera)
+    rows = []
+    for seed in range(CLOUD_NOISES):
+        settings.seed = seed
+        aside = (seed - CLOUD_NOISES // 2) * CLOUD_MOVE / CLOUD_SIZE[1]
+        camera = pan(middle, aside, 0.0, 1.0)
+        apply_camera(camera, plotter.camera)
+        plotter.renderer.ResetCameraClippingRange()
+        plotter.render()
+        picture = np.asarray(plotter.screenshot(return_img=True))
+        view = surface_view(field, camera, CLOUD_SIZE)
+        streaks = JUDGE.streaks(picture, view.u, view.v, view.mask)
+        rows.append({**streaks, "cloud": quality.cloud(picture, view.mask)})
+    plotter.close()
+    return {name: float(np.mean([row[name] for row in rows])) for name in rows[0]}
+
+
+def colours() -> Figures:
+    """Colours of five maps under the texture, over the plain ones; and by Surface LIC."""
+    field = gyre_field()
+    found: Figures = {}
+    for name in COLOUR_MAPS:
+        plain = flowtex.render(field, cmap=name, size=CLOUD_SIZE, zoom=2.0, strength=0.0)
+        drawn = flowtex.render(field, cmap=name, size=CLOUD_SIZE, zoom=2.0)
+        found[f"{name}, flowtex"] = _kept(drawn, plain)
+        stage = Stage(field, CLOUD_SIZE, surface_lic=True)
+        for way, mode in (("blended", 0), ("multiplied", 1)):
+            colour_lic(stage.plotter, name, mode)
+            found[f"{name}, Surface LIC {way}"] = _kept(stage.picture(zoom=2.0), plain)
+        stage.close()
+    return found
+
+
+def _kept(picture: Any, plain: Any) -> dict[str, float]:
+    """Return how colours differ from plain ones, by CIELAB, in the middle of a picture."""
+    inner = (slice(60, -60), slice(60, -60))
+    drawn = _cielab(np.asarray(picture)[inner])
+    expected = _cielab(np.asarray(plain)[inner])
+    chroma = np.hypot(drawn[..., 1], drawn[..., 2])
+    expected_chroma = np.hypot(expected[..., 1], expected[..., 2])
+    blurred = gaussian_filter(drawn - expected, (quality.CLOUD_PIXELS, quality.CLOUD_PIXELS, 0))
+    white = (np.asarray(picture)[inner].min(axis=-1) > NEAR_WHITE).mean()
+    return {
+        "chroma kept": float(chroma.sum() / expected_chroma.sum()),
+        "difference of means": float(np.linalg.norm(blurred, axis=-1).mean()),
+        "near white, %": 100 * float(white),
+        "deviation of lightness": float((drawn - expected)[..., 0].std()),
+    }
+
+
+def _cielab(picture: Any) -> Any:
+    """Return L*, a* and b* of a picture, (H, W, 3), by the standard's formulas."""
+    colour = picture / 255.0
+    linear = np.where(colour <= 0.04045, colour / 12.92, ((colour + 0.055) / 1.055) ** 2.4)
+    to_xyz = np.array(
+        [[0.4124, 0.3576, 0.1805], [0.2126, 0.7152, 0.0722], [0.0193, 0.1192, 0.9505]]
+    )
+    xyz = linear @ to_xyz.T / to_xyz.sum(axis=1)
+    x, y, z = np.moveaxis(np.where(xyz > 0.008856, np.cbrt(xyz), 7.787 * xyz + 16 / 116), -1, 0)
+    return np.stack([116 * y - 16, 500 * (x - y), 200 * (y - z)], axis=-1)
 
 
 def aliased() -> Figures:
@@ -255,6 +337,7 @@ SECTIONS = {
     "aliasing": aliased,
     "camera": camera,
     "cloud": clouds,
+    "colours": colours,
     "popping": popping,
     "motion": streaming,
     "vortices": vortices,

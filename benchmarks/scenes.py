@@ -171,3 +171,21 @@ def lic_actor(surface: Any) -> Any:
     actor = vtkActor()
     actor.SetMapper(mapper)
     return actor
+
+
+def colour_lic(plotter: Any, name: str, mode: int) -> None:
+    """Colour the Surface LIC of a plotter by speed, blended (mode 0) or multiplied (mode 1)."""
+    import pyvista as pv
+
+    actor = next(iter(plotter.renderer.GetActors()))
+    mapper = actor.GetMapper()
+    surface = pv.wrap(mapper.GetInput())
+    surface["speed"] = np.linalg.norm(surface["velocity"], axis=1)
+    table = pv.LookupTable(name, scalar_range=surface.get_data_range("speed"))
+    mapper.SetScalarModeToUsePointFieldData()
+    mapper.SelectColorArray("speed")
+    mapper.SetLookupTable(table)
+    mapper.UseLookupTableScalarRangeOn()
+    mapper.InterpolateScalarsBeforeMappingOn()
+    mapper.ScalarVisibilityOn()
+    mapper.GetLICInterface().SetColorMode(mode)
