@@ -20,7 +20,7 @@ class EvenPass:
     def __init__(self) -> None:
         #: Texture of each pixel before it fades, and the factor by which it does.
         self._texture = Target(2)
-        self._box: Box | None = None
+        self._layers: list[tuple[Box, float]] = []
         self._means = Target(1)
         self._rows = Target(1)
         self._blur = Rectangle("even", frozenset())
@@ -36,22 +36,24 @@ class EvenPass:
         sums.bind()
         sums.frame.AddColorAttachment(1, self._texture.texture)
         sums.frame.ActivateDrawBuffers(2)
-        self._box = None
+        self._layers = []
 
-    def include(self, box: Box) -> None:
-        """Take pixels into account into which sums are drawn."""
-        if self._box is None:
-            self._box = box
-            return
-        left, right, low, high = zip(self._box, box, strict=True)
-        self._box = (min(left), max(right), min(low), max(high))
+    def include(self, box: Box, depth: float) -> None:
+        """Take pixels into account into which the sums of a layer are drawn, at its depth."""
+        self._layers.append((box, depth))
+
+    @property
+    def _box(self) -> Box:
+        """All pixels that are taken into account."""
+        left, right, low, high = zip(*[box for box, _ in self._layers], strict=True)
+        return min(left), max(right), min(low), max(high)
 
     def draw(self, layer: FlowLayer, sums: Target, shown: Target, area: PassArea) -> None:
         """Draw the pixels of a surface, one of whose layers is given, as they are shown."""
         sums.frame.RemoveColorAttachment(1)
         sums.frame.ActivateDrawBuffer(0)
         window = layer.window
-        if window is None or self._box is None:
+        if window is None or not self._layers:
             return
         state = window.GetState()
         state.vtkglDisable(DEPTH_TEST)
@@ -68,9 +70,13 @@ class EvenPass:
         if blocks is not None:
             program.SetUniformi("u_side", blocks.side)
             program.SetUniform2i("u_first", blocks.first)
-        _draw(window, self._shade, shown, sources, self._box)
-        layer.after_frame()
+        # Only pixels at the depths of these layers.
         state.vtkglEnable(DEPTH_TEST)
+        state.vtkglDepthMask(False)
+        for box, depth in self._layers:
+            _draw(window, self._shade, shown, sources, box, depth)
+        state.vtkglDepthMask(True)
+        layer.after_frame()
 
     def _draw_means(self, window: vtkOpenGLRenderWindow, blocks: EvenBlocks) -> None:
         """Draw means along the rows, and of these along the columns."""
@@ -99,12 +105,13 @@ def _draw(
     target: Target,
     sources: dict[str, Target],
     box: Box,
+    depth: float = 0.0,
 ) -> None:
     """Draw a box of a target from other targets, by the names of their samplers."""
     target.bind()
     for name, source in sources.items():
         source.texture.Activate()
         step.program.SetUniformi(name, source.texture.GetTextureUnit())
-    step.draw(target, window, box)
+    step.draw(target, window, box, depth)
     for source in sources.values():
         source.texture.Deactivate()

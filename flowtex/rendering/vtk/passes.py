@@ -29,7 +29,7 @@ from flowtex.rendering.vtk.flow_mapper import (
 )
 from flowtex.rendering.vtk.frame import FrameSteps, Step
 from flowtex.rendering.vtk.layer import FlowLayer, insert_text, observe_draws
-from flowtex.rendering.vtk.targets import Rectangle, Target
+from flowtex.rendering.vtk.targets import Box, Rectangle, Target
 
 BLEND = 0x0BE2  #: OpenGL's number of blending.
 SCISSOR = 0x0C11  #: OpenGL's number of the scissor test.
@@ -38,6 +38,7 @@ EQUAL = 0x0202  #: OpenGL's number of the comparison of equal depths.
 ALWAYS = 0x0207  #: OpenGL's number of the comparison that is always true.
 MOST_LAYERS = 4096  #: Most layers, a power of two: their numbers are depths.
 COLOUR_AND_DEPTH = 0x4100  #: OpenGL's number of what is cleared.
+DEPTH_BUFFER = 0x100  #: OpenGL's number of the depths among it.
 SKIPPED = 3  #: Distance in pixels of the samples by which the visible tiles are found.
 
 
@@ -102,7 +103,7 @@ class DeferredPasses:
         state.vtkglEnable(DEPTH_TEST)
         state.vtkglDepthMask(True)
         state.vtkglDepthFunc(ALWAYS)
-        buffers.number(window)
+        buffers.number(window, [self._parts[layer].box(area) for layer in layers])
         state.vtkglDepthFunc(EQUAL)
         for surface in surfaces:
             buffers.even.begin(window, buffers.sums)
@@ -197,7 +198,8 @@ class _Buffers:
         self.context = window.GetContextCreationTime()
         self.places = Target(4, has_depth=True)
         self.sums = Target(4, has_depth=True)  #: Colour and texture of each pixel.
-        self.shown = Target(4)  #: Colour under the texture, and the texture less its local mean.
+        #: Colour under the texture, and the texture less its local mean.
+        self.shown = Target(4, depth_of=self.sums)
         self.even = EvenPass()
         self._numbers = Rectangle("depth", frozenset())
 
@@ -208,12 +210,21 @@ class _Buffers:
         self.sums.fit(window, size)
         self.shown.fit(window, size)
 
-    def number(self, window: vtkOpenGLRenderWindow) -> None:
+    def number(self, window: vtkOpenGLRenderWindow, boxes: list[Box | None]) -> None:
+        """Draw the numbers of the layers as depths, in the boxes of pixels that have layers."""
+        state = window.GetState()
+        state.vtkglClear(DEPTH_BUFFER)
+        drawn = [box for box in boxes if box is not None]
+        if not drawn:
+            return
+        left, right, low, high = zip(*drawn, strict=True)
         self._numbers.use(window)
         program = self._numbers.program
         program.SetUniformi("u_places", self.places.texture.GetTextureUnit())
         program.SetUniformf("u_layers", MOST_LAYERS)
-        self._numbers.draw(self.sums, window)
+        state.vtkglColorMask(False, False, False, False)
+        self._numbers.draw(self.sums, window, (min(left), max(right), min(low), max(high)))
+        state.vtkglColorMask(True, True, True, True)
 
 
 #: Of renderers, and of windows.
@@ -266,11 +277,22 @@ class _Part:
         map_attributes(self.actor.mapper, arrays)
         insert_text(self.actor, "flowtex places", "place_", variant)
 
+    def box(self, area: PassArea) -> Box | None:
+        """Return the pixels that the layer may cover, counted from the corner of the area."""
+        layer = self._layer()
+        assert layer is not None
+        box = layer.box(area.view, area.size)
+        if box is None:
+            return None
+        left, right, low, high = box
+        x, y = area.corner.tolist()
+        return left + x, right + x, low + y, high + y
+
     def sum(self, buffers: _Buffers, area: PassArea) -> None:
         """Sum the pixels of the layer."""
         layer = self._layer()
         assert layer is not None and layer.window is not None
-        box = layer.box(area.view, area.size)
+        box = self.box(area)
         if box is None:
             return
         self._sum.use(layer.window)
@@ -282,11 +304,9 @@ class _Part:
         origin -= x * along + y * up
         for name, value in (("u_rayCorner", origin), ("u_rayX", along), ("u_rayY", up)):
             program.SetUniform3f(name, value.tolist())
-        left, right, low, high = box
-        inside = (left + x, right + x, low + y, high + y)
         depth = self._number / MOST_LAYERS
-        buffers.even.include(inside)
-        self._sum.draw(buffers.sums, layer.window, inside, depth)
+        buffers.even.include(box, depth)
+        self._sum.draw(buffers.sums, layer.window, box, depth)
 
     def _before_places(self, program: vtkShaderProgram | None) -> None:
         layer = self._layer()

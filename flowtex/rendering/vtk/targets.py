@@ -26,13 +26,17 @@ Box: TypeAlias = tuple[int, int, int, int]
 class Target:
     """A texture of some channels in single precision, into which passes draw, maybe with depths."""
 
-    def __init__(self, channels: int, *, has_depth: bool = False) -> None:
+    def __init__(
+        self, channels: int, *, has_depth: bool = False, depth_of: Target | None = None
+    ) -> None:
         self._channels = channels
         self.texture = vtkTextureObject()
         self.frame = vtkOpenGLFramebufferObject()
-        self._depth = None
+        self._depth: vtkTextureObject | None = None
         if has_depth:
             self._depth = vtkTextureObject()
+        #: A target whose depths it shares, which is fitted before.
+        self._depth_of = depth_of
 
     @property
     def size(self) -> tuple[int, int]:
@@ -52,6 +56,8 @@ class Target:
             self._depth.SetContext(window)
             self._depth.AllocateDepth(*size, vtkTextureObject.Float32)
             self.frame.AddDepthAttachment(self._depth)
+        if self._depth_of is not None:
+            self.frame.AddDepthAttachment(self._depth_of._depth)
 
     def grow(self, window: vtkOpenGLRenderWindow, size: tuple[int, int]) -> None:
         """Have a texture of at least a width and a height."""
