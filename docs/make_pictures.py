@@ -348,7 +348,7 @@ def app() -> None:
 
     def opened(size: tuple[int, int], name: str, address: str) -> Page:
         page = browser.new_page(viewport={"width": size[0], "height": size[1]})
-        page.set_default_timeout(60_000)
+        page.set_default_timeout(180_000)
         page.goto(address)
         settle(page)
         if name != "cylinder":
@@ -360,8 +360,10 @@ def app() -> None:
     command = [sys.executable, "-m", "flowtex", "demo", "--no-browser", "--port", "0"]
     with (
         subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as served,
+        contextlib.ExitStack() as ends,
         sync_playwright() as playwright,
     ):
+        ends.callback(served.terminate)
         address = next(m.group() for line in served.stdout or () if (m := ADDRESS.search(line)))
         browser = playwright.chromium.launch(executable_path=shutil.which("chromium"))
         dark = opened((1200, 700), "cylinder", address)
@@ -394,7 +396,6 @@ def app() -> None:
         settle(narrow)
         _page_picture(narrow, "app_narrow")
         browser.close()
-        served.terminate()
 
 
 def _page_picture(page: Any, name: str) -> None:
