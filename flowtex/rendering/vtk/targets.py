@@ -56,8 +56,9 @@ class Target:
             self._depth.SetContext(window)
             self._depth.AllocateDepth(*size, vtkTextureObject.Float32)
             self.frame.AddDepthAttachment(self._depth)
-        if self._depth_of is not None:
-            self.frame.AddDepthAttachment(self._depth_of._depth)
+        shared = self._depth_of
+        if shared is not None and shared._depth is not None:
+            self.frame.AddDepthAttachment(shared._depth)
 
     def grow(self, window: vtkOpenGLRenderWindow, size: tuple[int, int]) -> None:
         """Have a texture of at least a width and a height."""
