@@ -33,13 +33,13 @@ BAD = [np.nan, np.inf, -np.inf, 1e300, -1e30, 9.96921e36, 0.0]
 
 
 def property_test(examples: int, *, fuzz: int = 0, steps: int = 50) -> hypothesis.settings:
-    """Return the decorator of a test that takes half as many examples in the suite.
+    """Return the decorator of a test that takes a third as many examples in the suite.
 
     ``make fuzz`` multiplies them, or ``fuzz`` where the suite has time for few. ``steps`` is the
     greatest number of steps of a state machine. See ``case_counts.py`` for counting the cases.
     """
     return hypothesis.settings(
-        max_examples=max(examples, fuzz) * FACTOR or (examples + 1) // 2,
+        max_examples=max(examples, fuzz) * FACTOR or (examples + 2) // 3,
         derandomize=not FACTOR,
         database=None,
         deadline=None,

@@ -22,17 +22,24 @@ from flowtex.trace.slices import NODE_AXES
 
 FLOWS: dict[str, Callable[[], TraceSlices]] = {
     "steady": lambda: trace(double_gyre_field(shape=(21, 41)), lags=[0.25, 1.0, 4.0]),
-    "varying": lambda: trace(vortex_field(), lags=[0.5, 1.0], steps=[0, 2]),
+    "varying": lambda: trace(vortex_field().downsample(4), lags=[0.5, 1.0], steps=[0, 2]),
     "one side": lambda: trace(double_gyre_field(shape=(11, 21)), lags=[1.0], two_sided=False),
     "triangles": lambda: trace(scattered_gyre(), lags=[0.5, 1.0]),
 }
 
 
-@pytest.fixture
-def folder(tmp_path: Path) -> Path:
-    path = tmp_path / "gyre.zarr"
+@pytest.fixture(scope="module")
+def saved(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Slices that were saved once, and that no test changes."""
+    path = tmp_path_factory.mktemp("slices") / "gyre.zarr"
     FLOWS["steady"]().save(path)
     return path
+
+
+@pytest.fixture
+def folder(saved: Path, tmp_path: Path) -> Path:
+    """Return a copy of the saved slices."""
+    return Path(shutil.copytree(saved, tmp_path / "gyre.zarr"))
 
 
 @pytest.mark.parametrize("kind", FLOWS)

@@ -193,12 +193,12 @@ def test_every_point_is_covered_by_the_tiles_of_a_level(
         assert level.triangles is not None
         found = np.zeros(len(level.triangles), dtype=int)
         order = np.lexsort(np.sort(level.triangles, axis=1).T)
+        whole = level.points[0][level.triangles].mean(axis=1)
+        places = {tuple(p): n for n, p in enumerate(np.round(whole, 9))}
         for key in keys:
             geometry = drawn(pyramid, key)
             # By its corners' places a triangle is found again in the whole level.
             middle = geometry.points[0][geometry.triangles].mean(axis=1)
-            whole = level.points[0][level.triangles].mean(axis=1)
-            places = {tuple(p): n for n, p in enumerate(np.round(whole, 9))}
             at = [places[tuple(p)] for p in np.round(middle, 9)]
             found[at] += 1
             assert geometry.blocks.min() >= 1 and geometry.blocks.max() <= 15
