@@ -298,16 +298,16 @@ def corner_ends(points: Floats, triangles: Indices) -> tuple[Floats, Floats]:
 def connected_nodes(triangles: Indices, count: int) -> Indices:
     """Return the number of the connected part of each node, (count,)."""
     triangles = triangles.astype(_smallest_type(count))
-    part = _components(triangles[:, 0], triangles[:, 1], count)
+    part = connected_items(triangles[:, 0], triangles[:, 1], count)
     # One side of every triangle connects nearly all.
     first, _, third = part.take(triangles.T)
     apart = first != third
     if apart.any():
-        part = _components(first[apart], third[apart], int(part.max()) + 1)[part]
+        part = connected_items(first[apart], third[apart], int(part.max()) + 1)[part]
     return part
 
 
-def _components(begins: Indices, ends: Indices, count: int) -> Indices:
+def connected_items(begins: Indices, ends: Indices, count: int) -> Indices:
     """Return the number of the connected part of each of ``count`` items, from links (n,)."""
     links = np.ones(len(begins), bool), (begins, ends)
     graph = scipy.sparse.coo_array(links, shape=(count, count))

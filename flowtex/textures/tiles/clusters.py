@@ -25,6 +25,7 @@ from flowtex.errors import FieldError
 from flowtex.field import FlowField
 from flowtex.field.steps import Steps, map_steps
 from flowtex.field.triangles.triangle_nodes import (
+    connected_items,
     connected_nodes,
     incidence,
     known_means,
@@ -52,6 +53,8 @@ MOST_BINS = 2**18
 #: Most faces in a bin that stay apart: three meet in the corner of a box. Where there are more, the
 #: edges between them are too close for the next level, as in noise.
 MOST_FACES = 3
+#: Least nodes of a sheet in a bin that is not a corner of another, as a share of the nodes of that.
+SHEET_SHARE = 0.3
 #: Number of the face of nodes in which several faces were merged.
 MERGED = 0
 #: Most nodes of the next level, as a share of the nodes of a level that is not the last.
@@ -232,7 +235,39 @@ class Clusters:
         cluster = numbered(key)[1]
         away = dot(self.normals, self.normals[first_places(cluster)][cluster]) < 0
         away &= _are_opposite(cluster, away, self.normals)[cluster]
-        return numbered(2 * cluster + away)[1]
+        cluster = numbered(2 * cluster + away)[1]
+        return numbered(self._sheets(cluster, edge))[1]
+
+    def _sheets(self, cluster: Indices, edge: Indices) -> Indices:
+        """Return the sheet of each node, (n,): nodes of a cluster that are connected within it.
+
+        Small ones are corners that a bin cuts off: they belong to a sheet beside them, or else to
+        the largest of their cluster.
+        """
+        corners = self.places.take(self.triangles.T)
+        ahead = corners[[1, 2, 0]]
+        sheet = np.arange(len(cluster))
+        for begins, ends in zip(corners, ahead, strict=True):
+            # The first sides connect nearly all.
+            linked = cluster.take(begins) == cluster.take(ends)
+            begins, ends = sheet.take(begins[linked]), sheet.take(ends[linked])
+            other = begins != ends
+            count = int(sheet.max()) + 1
+            sheet = connected_items(begins[other], ends[other], count)[sheet]
+        size = np.bincount(sheet)
+        within = cluster[first_places(sheet)]
+        order = np.argsort(size, kind="stable")
+        largest = np.zeros(int(cluster.max()) + 1, dtype=np.intp)
+        largest[within[order]] = order  # the last value written stays
+        is_small = size < SHEET_SHARE * size[largest[within]]
+        target = np.where(is_small, largest[within], np.arange(len(size)))
+        small = is_small[sheet]
+        apart = small.take(corners) != small.take(ahead)
+        ends = np.stack([corners[apart], ahead[apart]])
+        node, beside = np.where(small[ends[0]], ends, ends[::-1])
+        joins = (self.border[node] == self.border[beside]) & (edge[node] == edge[beside])
+        target[sheet[node[joins]]] = sheet[beside[joins]]
+        return target[sheet]
 
     def _compact(self, cluster: Indices, edge: Indices) -> Indices:
         """Return clusters (n,) in which each node belongs to the nearest one beside it."""

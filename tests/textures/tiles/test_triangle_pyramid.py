@@ -125,6 +125,26 @@ def test_surfaces_close_to_one_another_stay_apart() -> None:
         assert level.field.shape[1] > 50
 
 
+def test_turns_of_a_roll_stay_apart() -> None:
+    # Turns that are connected along the roll only, closer to each other than the bins.
+    points, triangles = sheet(np.zeros((40, 300)))
+    angle = points[:, 0] * (6 * np.pi / 299)
+    along = points[:, 1] * (2 / 39)
+    radius = 1 + 0.04 * angle / (2 * np.pi)
+    roll = np.stack([radius * np.cos(angle), radius * np.sin(angle), along], axis=-1)
+    field = flow_on(roll, triangles)
+    assert field.shape[1] == len(points)
+    levels = Levels(field, 300)
+    assert len(levels) >= 3
+    for level in levels[1:]:
+        kept = np.flatnonzero(level.number >= 0)
+        number = level.number[kept]
+        ends = np.full((2, level.field.shape[1]), np.inf)
+        np.minimum.at(ends[0], number, angle[kept])
+        np.minimum.at(ends[1], number, -angle[kept])
+        assert (-ends[1] - ends[0]).max() < np.pi
+
+
 def open_sides(level: Clusters) -> int:
     """Return how many sides of triangles lie away from the border of the surface."""
     surface = surface_of(level.field)
