@@ -130,6 +130,8 @@ def test_a_host_shows_a_flow_that_can_be_moved(page: Page, host: str, tmp_path: 
             page.locator(".jp-CodeCell .cm-content").click()
             page.keyboard.press("Shift+Enter")
         place = page.frame_locator("iframe") if host in FRAMED else page
+        # What the window does not show is not drawn; a slow page may show the view below it.
+        place.locator(".flowtex").first.scroll_into_view_if_needed()
         place.locator('.flowtex[data-sharp="true"]').first.wait_for()
         canvas = place.locator(".flowtex canvas").first
         box = canvas.bounding_box()
