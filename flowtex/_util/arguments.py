@@ -136,7 +136,11 @@ def check_field(field: Any, kind: type) -> None:
 
 
 def closest(name: str, names: Sequence[str]) -> list[str]:
-    """Return up to two names that a text stands for, begins, as "proj" does, or resembles."""
+    """Return suggestions for an unknown name.
+
+    They are its synonym, otherwise up to two names that begin with it, as ``projection`` does with
+    ``proj``, otherwise up to two similar names.
+    """
     if synonym := SYNONYMS.get(name.replace("-", "_")):
         found = []
         for each in names:

@@ -128,7 +128,11 @@ def ended_by_signals() -> Iterator[None]:
 
 @contextmanager
 def usual_interrupts() -> Iterator[None]:
-    """Let Ctrl-C raise a KeyboardInterrupt, as ``asyncio.run`` expects, which cancels its task."""
+    """Let Ctrl-C raise a KeyboardInterrupt inside a ``with`` block.
+
+    Only with this handler of Python's own does ``asyncio.run`` cancel its task on Ctrl-C. Ctrl-C
+    stays ignored where it is, as in a background job.
+    """
     before = signal.getsignal(signal.SIGINT)
     is_main = threading.current_thread() is threading.main_thread()
     if not is_main or before in (signal.SIG_IGN, None):

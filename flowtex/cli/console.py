@@ -158,7 +158,7 @@ def require_app() -> None:
 
 @contextmanager
 def writing(output: object) -> Iterator[None]:
-    """Turn errors of the disk inside a ``with`` block into one that names the file.
+    """Turn an OSError inside a ``with`` block into a UsageError that names the output.
 
     Raises
     ------

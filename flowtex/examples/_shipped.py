@@ -60,17 +60,18 @@ def vortex_arrays() -> tuple[Floats, Floats, Floats, Floats]:
 
 
 def periodic_velocity(vorticity: NDArray[np.complex128]) -> Floats:
-    """Return the velocity (N, N, 2) in a periodic box, in boxes per unit of time, by vorticity.
+    """Return the velocity (N, N, 2) along x and y in a periodic box, in boxes per unit of time.
 
-    The vorticity comes as Fourier coefficients from ``scipy.fft.rfft2``, (N, N // 2 + 1).
+    It follows from the vorticity, whose Fourier coefficients come from ``scipy.fft.rfft2``,
+    (N, N // 2 + 1) with y along the first axis. Its mean is zero.
     """
     size = len(vorticity)
     ky = 2.0 * np.pi * scipy.fft.fftfreq(size, 1.0 / size)[:, None]
     kx = 2.0 * np.pi * scipy.fft.rfftfreq(size, 1.0 / size)[None, :]
     square = np.asarray(kx**2 + ky**2)
     psi = vorticity / np.where(square == 0.0, np.inf, square)
-    parts = scipy.fft.irfft2(np.stack([1j * ky * psi, -1j * kx * psi]), (size, size))
-    return np.moveaxis(parts, 0, -1)
+    components = scipy.fft.irfft2(np.stack([1j * ky * psi, -1j * kx * psi]), (size, size))
+    return np.moveaxis(components, 0, -1)
 
 
 def load(name: str) -> dict[str, AnyArray]:

@@ -349,7 +349,7 @@ def locate_lonlat(
 
 
 def _earth_locator(field: Any) -> Locator:
-    """Return the locator of a field's nodes on the globe, which is cached with the field."""
+    """Return the locator of a field's nodes on the globe; the locator is cached with the field."""
     if field.projection == EARTH:
         return locator(field)
 

@@ -109,15 +109,16 @@ class UnlistedStore(WrapperStore[Store]):
 
 
 def levels_of(attributes: dict[str, Any]) -> Iterator[str]:
-    """Yield the names of the levels that the attributes of a group list."""
-    told = attributes.get("multiscales")
-    if isinstance(told, dict):
-        told = [told]
-    if not isinstance(told, list):
+    """Yield the names of the levels of resolution that the attributes of a group list."""
+    multiscales = attributes.get("multiscales")
+    if isinstance(multiscales, dict):
+        multiscales = [multiscales]
+    if not isinstance(multiscales, list):
         return
-    for scale in told[:MOST_NAMES]:
+    for scale in multiscales[:MOST_NAMES]:
         if not isinstance(scale, dict):
             continue
+        # The keys of OME-Zarr and of GeoZarr.
         for key, name in (("datasets", "path"), ("layout", "asset")):
             levels = scale.get(key)
             if not isinstance(levels, list):

@@ -467,11 +467,18 @@ def _point(values: ArrayLike) -> Point:
 
 
 def read_camera(vtk_camera: Any) -> Camera:
-    """Return the camera of a VTK camera, such as ``plotter.camera``, that sees something."""
+    """Return a camera like a VTK camera, such as ``plotter.camera``.
+
+    Raises
+    ------
+    CameraError
+        When the VTK camera sees nothing, as its position is its focal point; a FieldError.
+    """
     up = np.array(vtk_camera.GetViewUp())
     matrix = vtk_camera.GetModelViewTransformMatrix()
-    upwards = [matrix.GetElement(1, column) for column in range(3)]
-    if np.dot(up, upwards) < 0:  # turned over a pole, which VTK's own attribute does not say
+    up_on_screen = [matrix.GetElement(1, column) for column in range(3)]
+    # Elevation over a pole turns the view and leaves ViewUp as it was.
+    if np.dot(up, up_on_screen) < 0:
         up = -up
     return Camera(
         position=vtk_camera.GetPosition(),

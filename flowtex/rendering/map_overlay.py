@@ -67,9 +67,11 @@ def map_box(field: FlowField) -> Floats:
 def map_lines(
     field: FlowField, *, has_globe: bool, coast: Coast | None = None
 ) -> dict[str, MapLines]:
-    """Return coasts and graticule by their options; they end where cells and land do.
+    """Return coasts and graticule by the names of the options that show them.
 
-    The lines of a ``coast`` replace the coasts.
+    Around a field that covers a part of the Earth, lines are cut where its cells end. If the rest
+    of the globe is drawn (``has_globe``), they go around it. The lines of a ``coast`` replace the
+    coasts.
     """
     projection = field.projection
     box = map_box(field)
@@ -83,14 +85,15 @@ def map_lines(
 
     def in_cells(lines: MapLines) -> MapLines:
         distances, nearest = tree.query(lines.points)
-        # A point of the graticule may be a node, which is as far as that up to rounding.
+        # A point of the graticule may be a node, whose distance is the reach, up to rounding.
         return lines.within(distances <= (1 + 1e-6) * reach[nearest])
 
-    meshes = in_cells(graticule(projection, box))
+    fine_graticule = in_cells(graticule(projection, box))
     if not has_globe:
-        return {"coastlines": in_cells(coastlines(projection, box, coast)), "graticule": meshes}
+        cut_coasts = in_cells(coastlines(projection, box, coast))
+        return {"coastlines": cut_coasts, "graticule": fine_graticule}
     whole = coastlines(projection, coast=coast)
-    return {"coastlines": whole, "graticule": graticule(projection).and_(meshes)}
+    return {"coastlines": whole, "graticule": graticule(projection).and_(fine_graticule)}
 
 
 def ground_cells(field: FlowField, *, tiled: bool = False) -> Ground:

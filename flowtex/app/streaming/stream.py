@@ -130,22 +130,25 @@ class FrameStream(AreaAdapter):
 
     def __init__(self, name: str, viewport: Viewport) -> None:
         super().__init__(name)
-        #: Whether the animation runs, and whether the browser draws, so that no picture is needed.
-        self.playing = self.paused = False
-        #: Whether the surface is fitted to another size of the view, which a page does itself.
+        self.playing = False  #: Whether the animation runs.
+        self.paused = False  #: Whether no picture is sent, because the browser draws.
+        #: Whether the camera is fitted to the surface when the size of the view changes. A page
+        #: moves its own camera.
         self.fits = True
         #: Returns whether a page is connected; otherwise nothing is drawn.
         self.watched: Callable[[], bool] = lambda: True
-        #: Signal with a FieldError when a part of the data, such as a later step, cannot be read.
+        #: Signal when a part of the data cannot be read, such as a later step; its argument is the
+        #: FieldError.
         self.data_failed = Signal()
         self.painter = ViewPainter(viewport)
         self.clock = FrameClock()
         self._viewport = viewport
         self._wake = asyncio.Event()
-        self._sized = self._is_new = False
+        self._sized = False  # whether the page has sent its size
+        self._is_new = False  # whether a client has connected that has no picture
         self._closed = False
-        self._fault = ""
-        self._tiled = 0.0
+        self._fault = ""  # text of the last error of the data
+        self._tiled = 0.0  # time at which tiles were drawn last, in seconds of the clock
 
     def update_size(self, origin: str, size: object) -> None:
         """Follow the size of the view in the page, in CSS pixels ``w``, ``h`` times ``p``."""

@@ -257,6 +257,17 @@ class CubicMap:
     For millions of look-ups each coordinate is a separate array. Catmull-Rom's cubic is the line
     between two nodes, and -s (1 - s) / 2 times that between their second differences, which are not
     looked up where they are too small to matter.
+
+    Parameters
+    ----------
+    surface
+        Surface of J x I nodes; nodes without a position have a finite one nearby.
+    frame
+        C unit vectors, (C, 3), along which positions are given.
+    origin
+        Point in space, (3,), from which positions are measured.
+    dtype
+        Type of the numbers.
     """
 
     def __init__(
@@ -279,7 +290,8 @@ class CubicMap:
         self._parts: list[AnyArray] = []
         for part in (nodes[:, 1:-1, 1:-1], by_i[:, 1:-1], by_j[:, :, 1:-1], by_both):
             self._parts.append(np.ascontiguousarray(part, dtype).reshape(len(frame), -1))
-        #: Greatest effects of the second differences, (C,) each.
+        #: Greatest shifts of a point in a cell by the second differences, (C,) each: s (1 - s) / 2
+        #: is at most 1/8, and for both axes 1/64.
         self._most: list[AnyArray] = []
         for part, most in zip(self._parts[1:], (1 / 8, 1 / 8, 1 / 64), strict=True):
             self._most.append(np.abs(part).max(axis=1, initial=0) * most)

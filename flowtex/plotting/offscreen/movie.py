@@ -116,7 +116,7 @@ def _seconds(field: FlowField, settings: Settings, seconds: float | None) -> flo
 
 
 def _check_motion(field: FlowField, settings: Settings) -> None:
-    """Raise a MovieError for a steady flow that would stand still."""
+    """Raise a MovieError if a steady flow, of one time, would stand still."""
     if field.sign_free:
         msg = "the field is sign-free, so it cannot stream; a movie of it needs several times"
     elif settings.noise != "procedural":

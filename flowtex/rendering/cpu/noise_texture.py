@@ -38,6 +38,9 @@ class NoiseLookup(Lookup):
     averaging takes of the contrast is known and made up for. Corrected noise has grains as long as
     the longer side of a texel, so the level can be finer than the longest side of the footprint
     asks for.
+
+    ``values`` are the uniforms. ``start`` (N, 2) are the noise coordinates of the fragments, and
+    ``spacing`` (N,) are the lags between two samples.
     """
 
     def __init__(self, fragments: Fragments, values: Values, images: NoiseImages) -> None:
@@ -50,11 +53,12 @@ class NoiseLookup(Lookup):
         size: Any = np.asarray(values["u_imageSize"])
         texels = covered_texels(coordinate, size, longest=not textures.corrected)
         self.level = mip_level(texels, values)
+        # The deviation is known at every level and half-way to the next.
         half_levels = np.minimum(2.0 * self.level, const.LAST_HALF_LEVEL)
         deviation = np.interp(half_levels, np.arange(HALF_LEVELS), textures.deviations)
         self._gain = 1.0 / deviation[:, None]
-        step = images.step.at(self.start, self.level)[:, 0]
-        self.spacing = step * np.exp2(self.level) * values["u_spacing"]
+        lag_across_texel = images.step.at(self.start, self.level)[:, 0]
+        self.spacing = lag_across_texel * np.exp2(self.level) * values["u_spacing"]
 
     def lookup(self, displacement: Floats, length: Floats) -> Floats:
         """Noise, (N, 1)."""

@@ -46,7 +46,11 @@ MOST_HPA = 2000.0
 
 
 def with_levels(ds: xr.Dataset) -> xr.Dataset:
-    """Return a dataset whose vertical axes have the values of variables that belong to them."""
+    """Return a dataset whose vertical dimensions have coordinates.
+
+    A dimension without a coordinate takes the values of the variable along it that has its levels,
+    such as ``ZNW`` of ``bottom_top``.
+    """
     found: dict[str, xr.Variable] = {}
     for name, variable in ds.variables.items():
         if variable.ndim != 1 or variable.dtype.kind not in "fiu":
@@ -54,10 +58,10 @@ def with_levels(ds: xr.Dataset) -> xr.Dataset:
         (dim,) = map(str, variable.dims)
         if dim not in ds.variables and dim not in found and _are_levels(str(name), dim, variable):
             found[dim] = variable
-    lines = {}
+    coordinates = {}
     for dim, variable in found.items():
-        lines[dim] = (dim, variable.values, {**variable.attrs, "axis": "Z"})
-    return ds.assign_coords(lines)
+        coordinates[dim] = (dim, variable.values, {**variable.attrs, "axis": "Z"})
+    return ds.assign_coords(coordinates)
 
 
 def _are_levels(name: str, dim: str, variable: xr.Variable) -> bool:

@@ -434,14 +434,18 @@ def _match(u: xr.DataArray, v: xr.DataArray) -> bool:
 def _crossed(u: xr.DataArray, v: xr.DataArray, arrays: Sequence[xr.DataArray]) -> bool:
     """Return whether names say that two variables are of different pairs, as u10 and v100 are."""
     present = {_text(array, "name") for array in arrays}
-    names = _text(u, "name"), _text(v, "name")
-    if names[1] in _name_partners(names[0], PARTNERS):
+    u_name = _text(u, "name")
+    v_name = _text(v, "name")
+    partners_of_u = _name_partners(u_name, PARTNERS)
+    if v_name in partners_of_u:
         return False
-    others = {*_name_partners(names[0], PARTNERS), *_name_partners(names[1], FIRST_OF)}
-    if others & present:
+    partners_of_v = _name_partners(v_name, FIRST_OF)
+    if (partners_of_u | partners_of_v) & present:
         return True
-    stems = [re.sub(r"\d+", "", name) for name in names]
-    return names[0] != stems[0] and stems[1] in _name_partners(stems[0], PARTNERS)
+    # Without a number in its name, u may be a partner of any v.
+    u_stem = re.sub(r"\d+", "", u_name)
+    v_stem = re.sub(r"\d+", "", v_name)
+    return u_name != u_stem and v_stem in _name_partners(u_stem, PARTNERS)
 
 
 def are_partners(u: str, v: str) -> bool:

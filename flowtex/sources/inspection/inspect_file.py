@@ -302,6 +302,8 @@ def check_variables(count: int) -> None:
 
 
 class _Header:
+    """Header of a NetCDF file in one of the classic formats."""
+
     def __init__(self, data: Data) -> None:
         self._data = data
         self._at = 0
@@ -325,8 +327,11 @@ class _Header:
             self._variable()
 
     def length(self, size: int) -> int:
-        """Return the declared length of the file in bytes; it has ``size`` bytes."""
-        each = [nbytes for _, nbytes, repeated in self._places if repeated]
+        """Return the length that the header declares, in bytes; ``size`` is the actual length.
+
+        A file that is shorter has been cut off.
+        """
+        each = [nbytes for _, nbytes, has_records in self._places if has_records]
         # Values are padded to four bytes, except for those of a single variable with records.
         if len(each) == 1:
             record = each[0]
@@ -334,7 +339,9 @@ class _Header:
             record = sum(-(-nbytes // 4) * 4 for nbytes in each)
         records = self._records
         if records in STREAMING:
-            start = min((begin for begin, _, repeated in self._places if repeated), default=size)
+            start = min(
+                (begin for begin, _, has_records in self._places if has_records), default=size
+            )
             if record:
                 records = max(size - start, 0) // record
             else:
@@ -343,9 +350,9 @@ class _Header:
                 # The last record is incomplete.
                 records += 1
         ends = [
-            begin + nbytes + (record * (records - 1) if repeated else 0)
-            for begin, nbytes, repeated in self._places
-            if nbytes and (records or not repeated)
+            begin + nbytes + (record * (records - 1) if has_records else 0)
+            for begin, nbytes, has_records in self._places
+            if nbytes and (records or not has_records)
         ]
         return max(ends, default=0)
 

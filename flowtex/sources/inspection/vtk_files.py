@@ -423,7 +423,7 @@ def _ends(extent: str) -> list[int]:
 
 
 def _check_whole(name: str, text: str, most: int | None = None) -> None:
-    """Raise a FieldError for a count or number in an attribute that is negative or too large."""
+    """Raise a FieldError if the whole number in an attribute ``name`` is negative or too large."""
     value = _whole(text)
     if value < 0 or (most is not None and value > most):
         if most is None:

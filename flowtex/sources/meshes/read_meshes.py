@@ -8,15 +8,15 @@ triangles. Vectors on cells become vectors on nodes. :meth:`FlowField.from_array
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from dataclasses import replace
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, field, replace
 from itertools import chain
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from flowtex._util.array_types import Floats
+from flowtex._util.array_types import Bools, Floats
 from flowtex.errors import FieldError
 from flowtex.field.derived.quantities import component_name
 from flowtex.field.field_arrays import NOTABLE_SHARE, GridArrays, TriangleArrays
@@ -83,18 +83,15 @@ def read_meshes(mesh: Any, options: FieldOptions, *, name: str = "") -> GridArra
     if chosen is not None and is_plain and _has_cells_at_folds(first.grid, chosen, velocity):
         chosen = None
 
-    def draw(grid: Any) -> Sheet:
+    def sheet_of(grid: Any) -> Sheet:
         if chosen is not None:
             return volume.plane_sheet(grid, chosen, velocity, periodic, sign_free=sign_free)
         return surface_sheet(grid, cut, velocity, record)
 
-    times = options.times
     count = len(mesh) if isinstance(mesh, (list, tuple)) else len(parts.times_of(mesh))
     ranges = volume.VolumeValues(velocity, chosen or cut, count, preference)
-    every = chain([first], steps)
-    arrays = _stacked(
-        every, read_as, _masks(stored, options), draw, times, preference, record, ranges
-    )
+    read = _Series(read_as, _masks(stored, options), sheet_of, preference, ranges)
+    arrays = _stacked(chain([first], steps), read, options.times, record)
     arrays |= {unit: getattr(options, unit) or "" for unit in OF_UNITS}
     record.notify()
     arrays |= {"name": name, "reading": record.reading, "vectors": velocity.name}
@@ -153,64 +150,108 @@ def _has_cells_at_folds(grid: Any, plane: volume.Plane, velocity: MeshArray) -> 
     return known.size <= MOST_NODES and GridSurface(points, known, (False, False)).is_folded
 
 
-def _stacked(
-    steps: Iterator[parts.TimeStep],
-    read_as: MeshVelocity,
-    masks: Masks,
-    draw: Callable[[Any], Sheet],
-    times: ArrayLike | None,
-    preference: str,
-    record: Record,
-    ranges: volume.VolumeValues,
-) -> dict[str, Any]:
-    velocity = read_as.drawn
-    first, reordered = next(steps), 0
-    start: Sheet | None = None
-    single: set[str] = set()
-    read = []
-    for step in chain([first], steps):
-        parts.check_arrays(step, first, read_as.stored)
-        same = parts.aligned(step, first)
-        grid = read_as.in_space(masks.masked(same.grid))
-        ranges.add(grid)
-        sheet = draw(grid)
-        if start is None:
-            start = sheet
+class _StepValues(NamedTuple):
+    """What is kept of a time step."""
+
+    step: parts.TimeStep  #: Its time and label; meshes are not kept.
+    shown: Bools  #: Nodes that are shown.
+    cells: Bools | None  #: Cells of a grid that are shown.
+    velocity: Floats  #: At the nodes, (..., C).
+    nodal: dict[str, Floats]  #: Scalars at the nodes.
+    flat: dict[str, Floats]  #: Scalars of the cells.
+
+
+@dataclass
+class _Series:
+    """The steps of a series, of which all have the nodes of the first one."""
+
+    velocity: MeshVelocity
+    masks: Masks
+    #: Returns the surface of a mesh that is drawn.
+    sheet_of: Callable[[Any], Sheet]
+    preference: str  #: Whether of two arrays of a name that of points or of cells is read.
+    ranges: volume.VolumeValues
+    sheet: Sheet | None = None  #: The surface in the first step.
+    read: list[_StepValues] = field(default_factory=list)
+    #: Names of the scalars that are not components of vectors.
+    single: set[str] = field(default_factory=set)
+    reordered: int = 0  #: Number of steps whose nodes or cells were in another order.
+
+    def add(self, step: parts.TimeStep, first: parts.TimeStep) -> None:
+        """Read a step, with its nodes and cells in the order of the first one."""
+        drawn = self.velocity.drawn
+        parts.check_arrays(step, first, self.velocity.stored)
+        aligned = parts.aligned(step, first)
+        if aligned is not step:
+            self.reordered += 1
+        grid = self.velocity.in_space(self.masks.masked(aligned.grid))
+        self.ranges.add(grid)
+        sheet = self.sheet_of(grid)
+        if self.sheet is None:
+            self.sheet = sheet
         else:
-            parts.check_nodes(start, sheet, step.label)
-        single |= {array.name for array in sheet.arrays if array.components == 1}
-        values = sheet.nodes(velocity), *_scalars(sheet, preference, velocity)
-        # Meshes are not kept.
-        read.append((replace(step, grid=None), sheet.shown, sheet.cells, *values))
-        reordered += same is not step
-    assert start is not None
-    kept, shown, cells, vectors, *scalars = zip(*read, strict=True)
-    order, moments = (
-        parts.ordered_times(kept, record) if times is None else (range(len(kept)), None)
-    )
-    if reordered:
-        text = f"nodes or cells of {reordered} steps are in another order than those of the first"
-        record("align", f"{text}, and were matched by their labels or places", notable=True)
-    masks.tell(record)
-    valid = np.logical_and.reduce(shown)
-    if start.cells is not None:
-        valid &= volume.nodes_to_keep(np.logical_and.reduce(cells), start.wrap)
-    if velocity.where == "cells":
+            parts.check_nodes(self.sheet, sheet, step.label)
+        self.single |= {array.name for array in sheet.arrays if array.components == 1}
+        nodal, flat = _scalars(sheet, self.preference, drawn)
+        without_mesh = replace(step, grid=None)
+        values = sheet.nodes(drawn)
+        self.read.append(_StepValues(without_mesh, sheet.shown, sheet.cells, values, nodal, flat))
+
+    @property
+    def valid(self) -> Bools:
+        """Nodes that are shown in all steps."""
+        assert self.sheet is not None
+        valid = np.logical_and.reduce([each.shown for each in self.read])
+        if self.sheet.cells is not None:
+            cells = np.logical_and.reduce([np.asarray(each.cells) for each in self.read])
+            valid &= volume.nodes_to_keep(cells, self.sheet.wrap)
+        return np.asarray(valid)
+
+
+def _stacked(
+    steps: Iterator[parts.TimeStep], series: _Series, times: ArrayLike | None, record: Record
+) -> dict[str, Any]:
+    """Return the arrays of a field by name, with the steps of a series in the order of time."""
+    first = next(steps)
+    for step in chain([first], steps):
+        series.add(step, first)
+    sheet = series.sheet
+    assert sheet is not None
+    order: Sequence[int] = range(len(series.read))
+    moments = None
+    if times is None:
+        order, moments = parts.ordered_times([each.step for each in series.read], record)
+    if series.reordered:
+        record(
+            "align",
+            f"nodes or cells of {series.reordered} steps are in another order than those of the "
+            "first, and were matched by their labels or places",
+            notable=True,
+        )
+    series.masks.tell(record)
+    if series.velocity.drawn.where == "cells":
         record("surface", "velocity averaged from the cells to the nodes")
-    axes = _axes(velocity, start, record, solid=first.grid.max_cell_dimensionality == 3)
-    flow = np.zeros((len(order), *vectors[0].shape[:-1], 3))
-    for n, number in enumerate(order):
-        flow[n][..., axes] = vectors[number]
+    is_solid = first.grid.max_cell_dimensionality == 3
+    axes = _axes(series.velocity.drawn, sheet, record, solid=is_solid)
+    in_order = [series.read[number] for number in order]
+    flow = np.zeros((len(in_order), *in_order[0].velocity.shape[:-1], 3))
+    for number, each in enumerate(in_order):
+        flow[number][..., axes] = each.velocity
     _note_rest(flow, moments, record)
-    nodal, flat = (parts.scalar_steps([s[n] for n in order], moments, record) for s in scalars)
+    nodal = parts.scalar_steps([each.nodal for each in in_order], moments, record)
+    flat = parts.scalar_steps([each.flat for each in in_order], moments, record)
     for name in {*nodal} & {*flat}:
         record("align", f"{name!r} lies on nodes and on cells; that on nodes is read", notable=True)
         del flat[name]
-    arrays = {"points": start.points, "velocity": flow, "valid": valid}
+    arrays: dict[str, Any] = {"points": sheet.points, "velocity": flow, "valid": series.valid}
     arrays |= {"scalars": nodal, "cell_scalars": flat}
-    arrays["parts"] = tuple(name for name in (*nodal, *flat) if name not in single)
-    triangles = {} if start.triangles is None else {"triangles": start.triangles}
-    return {**arrays, **triangles, "times": moments if times is None else times}
+    arrays["parts"] = tuple(name for name in (*nodal, *flat) if name not in series.single)
+    if sheet.triangles is not None:
+        arrays["triangles"] = sheet.triangles
+    arrays["times"] = times
+    if times is None:
+        arrays["times"] = moments
+    return arrays
 
 
 def _note_rest(flow: Floats, moments: Any, record: Record) -> None:

@@ -94,19 +94,16 @@ def catalogue(mesh: pv.DataSet) -> list[MeshArray]:
     """Return the arrays on the points and cells of a mesh, without those of :data:`BLANKING`."""
     found = []
     for where in _PLACES:
-        for data in [data_of(mesh, where)]:
-            for name in data:
-                for shape, kind in [(np.shape(data[name])[1:], np.asarray(data[name]).dtype.kind)]:
-                    if name not in BLANKING:
-                        found.append(
-                            MeshArray(
-                                name,
-                                where,
-                                math.prod(shape),
-                                numeric=kind in "fiub",
-                                real=kind == "f",
-                            )
-                        )
+        data = data_of(mesh, where)
+        for name in data:
+            if name in BLANKING:
+                continue
+            values = np.asarray(data[name])
+            components = math.prod(values.shape[1:])
+            kind = values.dtype.kind
+            is_number = kind in "fiub"
+            array = MeshArray(name, where, components, numeric=is_number, real=kind == "f")
+            found.append(array)
     return found
 
 
@@ -157,22 +154,36 @@ def values_of(mesh: pv.DataSet, array: MeshArray) -> AnyArray:
 
 
 def candidates(mesh: pv.DataSet) -> list[MeshArray]:
-    """Return possible velocities: arrays, or vectors of single components by their names."""
-    parts = mesh.GetPointData(), mesh.GetCellData()
-    others = {a.GetName() for data in parts for a in (data.GetNormals(), data.GetTCoords()) if a}
-    arrays = [
-        array
-        for array in catalogue(mesh)
-        if array.real and array.components in (2, 3)
-        if array.name not in others and not NO_VELOCITY.fullmatch(array.name)
-    ]
-    # If both points and cells have an array, one was computed from the other: prefer points.
-    by_name = {array.name: array for array in reversed(arrays)}
-    return [array for array in arrays if by_name[array.name] is array] or _component_vectors(mesh)
+    """Return the arrays that may be a velocity.
+
+    If there are none, return vectors of arrays with one component each, whose names are those of
+    components, such as u, v and w.
+    """
+    not_velocity = _normals_and_texture_coordinates(mesh)
+    found: dict[str, MeshArray] = {}
+    for array in catalogue(mesh):
+        if not array.real or array.components not in (2, 3):
+            continue
+        if array.name in not_velocity or NO_VELOCITY.fullmatch(array.name):
+            continue
+        # If both points and cells have an array, one was computed from the other: arrays of points
+        # come first, and stay.
+        found.setdefault(array.name, array)
+    return list(found.values()) or _component_vectors(mesh)
+
+
+def _normals_and_texture_coordinates(mesh: pv.DataSet) -> set[str]:
+    """Return the names of arrays that a mesh declares as normals or texture coordinates."""
+    names = set()
+    for data in (mesh.GetPointData(), mesh.GetCellData()):
+        for array in (data.GetNormals(), data.GetTCoords()):
+            if array is not None:
+                names.add(array.GetName())
+    return names
 
 
 def _component_vectors(mesh: pv.DataSet) -> list[MeshArray]:
-    """Return vectors of single components by their names; pairs on flat meshes."""
+    """Return vectors of arrays with one component each, by their names; pairs on flat meshes."""
     arrays = catalogue(mesh)
     thick = thick_axes(np.reshape(mesh.bounds, (3, 2)).T)
     if len(thick) == 2:
@@ -181,11 +192,12 @@ def _component_vectors(mesh: pv.DataSet) -> list[MeshArray]:
         pair = None
     found = []
     for where in _PLACES:
-        for names in [
-            [a.name for a in arrays if a.where == where and a.real and a.components == 1]
-        ]:
-            for name, parts in find_vectors(names, pair).items():
-                found.append(MeshArray(name, where, len(parts), parts=parts))
+        names = []
+        for array in arrays:
+            if array.where == where and array.real and array.components == 1:
+                names.append(array.name)
+        for name, parts in find_vectors(names, pair).items():
+            found.append(MeshArray(name, where, len(parts), parts=parts))
     return found
 
 
