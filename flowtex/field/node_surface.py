@@ -189,10 +189,12 @@ def to_index_space(
 def _project(
     velocity: Floats, p_i: Floats, p_j: Floats, valid: Bools, tiny: float, u: Floats, speed: Floats
 ) -> tuple[float, float]:
-    """Write the components of a velocity (T, j, i, 3) along both tangents, and its speed.
+    """Write the components of a velocity (T, J, I, 3) along both tangents, and their speed.
 
-    They go into ``u``, (T, j, i, 2) in cells per unit of time, and ``speed``, (T, j, i). Returns
-    the sums of the squares of the velocity, and of its part normal to the surface.
+    They go into ``u``, (T, J, I, 2) in cells per unit of time, and ``speed``, (T, J, I), of the
+    part of the velocity that is tangential. Tangents, (J, I, 3), are derivatives of the position by
+    cell; ``tiny`` is the square of the length of a collapsed one. Returns the sums of the squares
+    of the velocity, and of its part normal to the surface, where cells have an area.
     """
     g_ii = dot(p_i, p_i)
     g_jj = dot(p_j, p_j)
@@ -200,17 +202,24 @@ def _project(
     determinant = g_ii * g_jj - g_ij**2
     along_i = dot(velocity, p_i)
     along_j = dot(velocity, p_j)
-    flat = (determinant <= COLLAPSED_AREA * g_ii * g_jj) | (g_ii <= tiny) | (g_jj <= tiny)
-    safe = np.where(flat, 1.0, determinant)
-    u_i = np.where(flat, _alone(along_i, g_ii, tiny), (g_jj * along_i - g_ij * along_j) / safe)
-    u_j = np.where(flat, _alone(along_j, g_jj, tiny), (g_ii * along_j - g_ij * along_i) / safe)
-    u[..., 0], u[..., 1] = u_i, u_j
-    along = u_i[..., None] * p_i + u_j[..., None] * p_j
-    speed[:] = norm(along)
-    np.subtract(velocity, along, out=along)
-    all_ = float((dot(velocity, velocity) * (~flat & valid)).sum())
-    normal = float((dot(along, along) * (~flat & valid)).sum())
-    return all_, normal
+    is_parallel = determinant <= COLLAPSED_AREA * g_ii * g_jj
+    collapsed = is_parallel | (g_ii <= tiny) | (g_jj <= tiny)
+    safe = np.where(collapsed, 1.0, determinant)
+    # Two tangents along one line share the velocity.
+    share = np.where((g_ii > tiny) & (g_jj > tiny), 0.5, 1.0)
+    alone_i = share * _along_one(along_i, g_ii, tiny)
+    alone_j = share * _along_one(along_j, g_jj, tiny)
+    u_i = np.where(collapsed, alone_i, (g_jj * along_i - g_ij * along_j) / safe)
+    u_j = np.where(collapsed, alone_j, (g_ii * along_j - g_ij * along_i) / safe)
+    u[..., 0] = u_i
+    u[..., 1] = u_j
+    tangential = u_i[..., None] * p_i + u_j[..., None] * p_j
+    speed[:] = norm(tangential)
+    normal = np.subtract(velocity, tangential, out=tangential)
+    counted = ~collapsed & valid
+    total_square = float((dot(velocity, velocity) * counted).sum())
+    normal_square = float((dot(normal, normal) * counted).sum())
+    return total_square, normal_square
 
 
 def _at_pole(pole: Pole, velocity: Floats, u: Floats, speed: Floats) -> None:
@@ -224,7 +233,7 @@ def _at_pole(pole: Pole, velocity: Floats, u: Floats, speed: Floats) -> None:
     speed[:, pole.line] = np.linalg.norm(mean, axis=-1)[:, None]
 
 
-def _alone(along: Floats, square: Floats, tiny: float) -> Floats:
-    """Return the component along one tangent where the other one has collapsed."""
+def _along_one(along: Floats, square: Floats, tiny: float) -> Floats:
+    """Return the component along one tangent where the two span no area; 0 if it has collapsed."""
     solid = square > tiny
     return np.asarray(np.where(solid, along / np.where(solid, square, 1.0), 0.0))

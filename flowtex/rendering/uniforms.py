@@ -254,7 +254,13 @@ def _motion(textures: TextureSet, settings: Settings, view: ViewState) -> Values
 
 
 def _noise_origin(focus: Floats, finest: float, anchor: Floats) -> Values:
-    """Return the noise's origin near the focus, in space and in the finest cells."""
+    """Return the uniforms of the noise's origin, a point of its lattices near the focus.
+
+    Octaves of the noise are sqrt(2) apart. Even ones have cells of ``finest`` times powers of two,
+    odd ones sqrt(2) times as wide. The origin is given as a length from ``anchor``, to which
+    positions in shaders are relative, and in cells of octaves 0 and 1: a multiple of ``coarse``,
+    which coarser octaves divide without a rest, and for octave 1 what is left.
+    """
     coarse = 2**CLEAR_DOUBLINGS
     limit = 2 ** (NOISE_DOUBLINGS - CLEAR_DOUBLINGS) - 1
     even = np.clip(np.rint(focus / finest / coarse), -limit, limit) * coarse + 0.0

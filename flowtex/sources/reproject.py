@@ -235,21 +235,24 @@ def _with_meridians(lon: Floats, lat: Floats) -> Floats:
 
 
 def _lines(lon: Floats, lat: Floats) -> tuple[Floats, Floats] | None:
-    """Return the longitude of each column and the latitude of each row; ``None`` if they differ."""
+    """Return the longitude of each column and the latitude of each row of positions, (J, I) each.
+
+    ``None`` if longitudes differ within a column, or latitudes within a row.
+    """
     has_meridian: Bools = np.isfinite(lon) & (np.abs(lat) < POLE_LATITUDE)
     columns = np.full(lon.shape[1], np.nan)
     rows = np.full(lon.shape[0], np.nan)
-    for number in range(lon.shape[1]):
-        known = lon[has_meridian[:, number], number]
+    for column in range(lon.shape[1]):
+        known = lon[has_meridian[:, column], column]
         if len(known):
-            columns[number] = known[len(known) // 2]
-    for number in range(lon.shape[0]):
-        known = lat[number][np.isfinite(lat[number])]
+            columns[column] = known[len(known) // 2]
+    for row in range(lon.shape[0]):
+        known = lat[row][np.isfinite(lat[row])]
         if len(known):
-            rows[number] = known[len(known) // 2]
-    apart = np.abs(turned(lon - columns))[has_meridian]
-    beside = np.abs(lat - rows[:, None])[np.isfinite(lat)]
-    for errors, line in ((apart, columns), (beside, rows)):
+            rows[row] = known[len(known) // 2]
+    lon_errors = np.abs(turned(lon - columns))[has_meridian]
+    lat_errors = np.abs(lat - rows[:, None])[np.isfinite(lat)]
+    for errors, line in ((lon_errors, columns), (lat_errors, rows)):
         steps = np.abs(turned(np.diff(line[np.isfinite(line)])))
         if errors.max(initial=0.0) > SAME_LINE * np.median(steps):
             return None

@@ -216,3 +216,20 @@ def test_cell_size_follows_the_smaller_side() -> None:
     surface = open_surface(indices(5, 5) @ linear_map("stretched").T)
     np.testing.assert_allclose(surface.cell_size, np.sqrt(2 / (1e-4 + 1e4)), rtol=0.5)
     assert surface.cell_size.min() == pytest.approx(surface.cell_size.max())
+
+
+def test_cells_collapsed_to_a_line_have_the_velocity_once() -> None:
+    """Both tangents lie along one line, and their components add up to the velocity."""
+    points = indices(9, 12) @ linear_map("sheared").T
+    collapsed = slice(0, 4)
+    points[:, collapsed, 1] = 0.0
+    points[:, collapsed, 0] = np.add.outer(0.5 * np.arange(9), np.arange(4.0) - 20.0)
+    velocity = np.broadcast_to([2.0, 1.0, 0.0], points.shape)
+    field = FlowField.from_arrays(points, velocity, periodic="")
+    inner = (0, slice(2, -2), 1)
+    found = field.index_velocity
+    np.testing.assert_allclose(found.speed[inner], 2.0, rtol=1e-6)
+    p_i, p_j = field.surface.tangents
+    u = found.components[inner]
+    along = u[..., :1] * p_i[2:-2, 1] + u[..., 1:] * p_j[2:-2, 1]
+    np.testing.assert_allclose(along, np.broadcast_to([2.0, 0.0, 0.0], along.shape), atol=1e-6)

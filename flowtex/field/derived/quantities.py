@@ -116,11 +116,12 @@ def steps_of(field: Any, name: str) -> Steps:
         return other.scalars[name]
     if name in DERIVED or name in FOLLOWED:
         check_derivable(field, name)
-    vectors = [field.vectors or UNNAMED, *(part[:-2] for part in field.parts)]
-    if field.projection is not None:
-        vectors = []
+    vectors: list[str] = []
+    if field.projection is None:  # components of a map are not along x and y
+        of_components = [part[:-2] for part in field.parts]  # such as U of U_x
+        vectors = [field.vectors or UNNAMED, *of_components]
     derived: list[str] = []
-    if finest_of(field) is None:
+    if finest_of(field) is None:  # otherwise this is the coarsest level of a store
         derived = list(DERIVED)
     names = ", ".join(map(repr, dict.fromkeys(["speed", *field.scalars, *vectors, *derived])))
     msg = f"the field has no scalar {name!r}; expected one of {names}"

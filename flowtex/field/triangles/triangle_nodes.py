@@ -89,7 +89,24 @@ def sums_at(
     of: Indices | None = None,
     weights: Floats | None = None,
 ) -> Floats:
-    """Return sums (count, C), by number (n,), of weighted values (N, C) ``of`` some items (n,)."""
+    """Return sums of values by target, (count, C).
+
+    Row k is the sum of ``weights[m] * values[of[m]]``, or of ``weights[m] * values[m]`` without
+    ``of``, over all m with ``number[m] == k``.
+
+    Parameters
+    ----------
+    number
+        Target of each summand, (n,).
+    values
+        Values, (N, C).
+    count
+        Number of targets.
+    of
+        Number of the value of each summand, (n,); by default they are in order.
+    weights
+        Weight of each summand, (n,); 1 by default.
+    """
     if of is not None:
         values = values.take(of, axis=0)
     return np.asarray(incidence(number[:, None], count, weights).T @ values)

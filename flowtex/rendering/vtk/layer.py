@@ -347,10 +347,12 @@ class FlowLayer:
         return np.asarray(pv.array_from_vtkmatrix(self.actor.GetMatrix()))
 
     def _loaders(self, send: Callable[..., vtkTextureObject]) -> dict[str, Callable[[], Any]]:
+        """Return functions that send the textures to the graphics card, by names of samplers."""
         loaders: dict[str, Callable[[], Any]] = {"u_slices": lambda: send(**self._slices(0))}
         colours = self._colours
         geometry = self.textures.geometry
-        # Also where nothing is mapped: no sampler may share a unit with one of another kind.
+        # Sent even without colours: a sampler that is not set would use unit 0, and clash with a
+        # sampler of another kind there.
         none = np.zeros((1, 1, 1, 4))
         single = partial(send, levels=0, single=True)
         loaders |= {

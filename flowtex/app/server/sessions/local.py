@@ -274,5 +274,5 @@ def _quiet_trame() -> Iterator[None]:
         yield
     finally:
         for name in quiet:
-            del os.environ[name]
+            os.environ.pop(name, None)
         os.environ.update(before)
