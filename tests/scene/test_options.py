@@ -18,7 +18,13 @@ import flowtex
 from flowtex.errors import FieldError
 from flowtex.field.options import FieldOptions, option_names
 from flowtex.scene.fields import read_field
-from flowtex.scene.options import Appearance, Options, ViewOptions
+from flowtex.scene.options import (
+    Appearance,
+    AppearanceAttribute,
+    AppearanceAttributes,
+    Options,
+    ViewOptions,
+)
 from flowtex.scene.scene import Scene, follow, lay_image, make_scenes
 
 
@@ -118,3 +124,13 @@ def test_a_view_of_nothing_is_warned_of(view: dict[str, Any]) -> None:
 
 def test_no_land_has_two_names() -> None:
     assert Appearance.of(land="none").land is None and Appearance.of(land=False).land is None
+
+
+def test_each_argument_of_the_appearance_is_a_live_attribute() -> None:
+    """All but the image, for which there is a method."""
+    declared = {
+        name
+        for name, each in vars(AppearanceAttributes).items()
+        if isinstance(each, AppearanceAttribute)
+    }
+    assert declared == set(option_names(Appearance)) - {"image"}
