@@ -354,6 +354,7 @@ def app() -> None:
         if name != "cylinder":
             page.get_by_label("Open another file").click()
             page.locator(".v-overlay--active .v-list-item", has_text=name).click()
+            page.get_by_text("161 × 65 nodes").wait_for(state="hidden")
             settle(page)
         return page
 
@@ -393,6 +394,7 @@ def app() -> None:
         narrow = opened((400, 760), "airfoil", address)
         narrow.get_by_label("Light or dark").click()
         narrow.mouse.move(380, 60)
+        narrow.get_by_text("speed (free-stream speed)").wait_for()
         settle(narrow)
         _page_picture(narrow, "app_narrow")
         browser.close()

@@ -199,7 +199,7 @@ class _Buffers:
         self.places = Target(4, has_depth=True)
         self.sums = Target(4, has_depth=True)  #: Colour and texture of each pixel.
         #: Colour under the texture, and the texture less its local mean.
-        self.shown = Target(4, depth_of=self.sums)
+        self.shown = Target(4, is_half=True, depth_of=self.sums)
         self.even = EvenPass()
         self._numbers = Rectangle("depth", frozenset())
 

@@ -19,17 +19,28 @@ from flowtex.rendering.shaders import shader_text
 MARKS = "//VTK::System::Dec\n//VTK::Output::Dec\n"
 
 
+#: OpenGL's numbers of textures of one, two and four channels in half precision.
+HALF_FLOATS = {1: 0x822D, 2: 0x822F, 4: 0x881A}
 #: First and end of columns and rows of pixels.
 Box: TypeAlias = tuple[int, int, int, int]
 
 
 class Target:
-    """A texture of some channels in single precision, into which passes draw, maybe with depths."""
+    """A texture of some channels, into which passes draw, maybe with depths.
+
+    It is in single precision, or in half precision, which takes less time.
+    """
 
     def __init__(
-        self, channels: int, *, has_depth: bool = False, depth_of: Target | None = None
+        self,
+        channels: int,
+        *,
+        is_half: bool = False,
+        has_depth: bool = False,
+        depth_of: Target | None = None,
     ) -> None:
         self._channels = channels
+        self._is_half = is_half
         self.texture = vtkTextureObject()
         self.frame = vtkOpenGLFramebufferObject()
         self._depth: vtkTextureObject | None = None
@@ -50,6 +61,8 @@ class Target:
         self.frame.SetContext(window)
         self.frame.Bind()
         self.texture.SetContext(window)
+        if self._is_half:
+            self.texture.SetInternalFormat(HALF_FLOATS[self._channels])
         self.texture.Allocate2D(*size, self._channels, VTK_FLOAT)
         self.frame.AddColorAttachment(0, self.texture)
         if self._depth is not None:
