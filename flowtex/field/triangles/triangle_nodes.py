@@ -314,7 +314,6 @@ def corner_ends(points: Floats, triangles: Indices) -> tuple[Floats, Floats]:
 
 def connected_nodes(triangles: Indices, count: int) -> Indices:
     """Return the number of the connected part of each node, (count,)."""
-    triangles = triangles.astype(_smallest_type(count))
     part = connected_items(triangles[:, 0], triangles[:, 1], count)
     # One side of every triangle connects nearly all.
     first, _, third = part.take(triangles.T)
@@ -326,6 +325,9 @@ def connected_nodes(triangles: Indices, count: int) -> Indices:
 
 def connected_items(begins: Indices, ends: Indices, count: int) -> Indices:
     """Return the number of the connected part of each of ``count`` items, from links (n,)."""
+    kind = _smallest_type(count)
+    begins = begins.astype(kind)
+    ends = ends.astype(kind)
     links = np.ones(len(begins), bool), (begins, ends)
     graph = scipy.sparse.coo_array(links, shape=(count, count))
     return np.asarray(scipy.sparse.csgraph.connected_components(graph, directed=False)[1], np.intp)

@@ -244,13 +244,15 @@ class Clusters:
         Small ones are corners that a bin cuts off: they belong to a sheet beside them, or else to
         the largest of their cluster.
         """
-        corners = self.places.take(self.triangles.T)
-        ahead = corners[[1, 2, 0]]
+        corners = self.triangles.T
+        if self.face.any():
+            corners = self.places.take(corners)
         sheet = np.arange(len(cluster))
-        for begins, ends in zip(corners, ahead, strict=True):
+        for k in range(3):
             # The first sides connect nearly all.
-            linked = cluster.take(begins) == cluster.take(ends)
-            begins, ends = sheet.take(begins[linked]), sheet.take(ends[linked])
+            linked = cluster.take(corners[k]) == cluster.take(corners[k - 1])
+            begins = sheet.take(corners[k][linked])
+            ends = sheet.take(corners[k - 1][linked])
             other = begins != ends
             count = int(sheet.max()) + 1
             sheet = connected_items(begins[other], ends[other], count)[sheet]
@@ -262,9 +264,12 @@ class Clusters:
         is_small = size < SHEET_SHARE * size[largest[within]]
         target = np.where(is_small, largest[within], np.arange(len(size)))
         small = is_small[sheet]
-        apart = small.take(corners) != small.take(ahead)
-        ends = np.stack([corners[apart], ahead[apart]])
-        node, beside = np.where(small[ends[0]], ends, ends[::-1])
+        pairs = []
+        for k in range(3):
+            apart = small.take(corners[k]) != small.take(corners[k - 1])
+            pairs.append(np.stack([corners[k][apart], corners[k - 1][apart]]))
+        sides = np.concatenate(pairs, axis=1)
+        node, beside = np.where(small[sides[0]], sides, sides[::-1])
         joins = (self.border[node] == self.border[beside]) & (edge[node] == edge[beside])
         target[sheet[node[joins]]] = sheet[beside[joins]]
         return target[sheet]
