@@ -138,7 +138,7 @@ SETTINGS: dict[str, st.SearchStrategy[Any]] = {
     "show_level": st.booleans(),
     "lines": pick(["auto", "pathlines", "streamlines"]),
     "parameter": pick(["arclength", "time"]),
-    "noise": pick(["procedural", "procedural", "image"]),
+    "noise": pick(["procedural", "procedural", "texture", "image"]),
 }
 #: Values of the appearance.
 APPEARANCE: dict[str, st.SearchStrategy[Any]] = {
@@ -166,5 +166,5 @@ def make_small(change: Any) -> None:
     from small_tiles import shrink
 
     shrink(change)
-    for module in ("pyramid", "triangle_pyramid"):
+    for module in ("grid_levels", "triangle_pyramid"):
         change(f"flowtex.textures.tiles.{module}.ROOT_NODES", LARGEST_WHOLE)
