@@ -29,6 +29,8 @@ from flowtex.field.triangles.triangle_nodes import solid_triangles
 from flowtex.field.triangles.triangle_surface import Surface
 
 STARTS = 12  #: Number of triangles around a point at which walks begin.
+#: Number of triangles that are tried where these lead nowhere, as between those around a pole.
+MOST_TRIED = 4000
 WALK_STEPS = 96  #: Most triangles in a walk.
 FLAT_TRIANGLE = 1e-20  #: Height of a triangle over a side, squared, below which it has no area.
 CURVED_TOLERANCE = 0.1  #: Tolerance in cells for points on a curved surface.
@@ -190,6 +192,20 @@ class Locator:
         index = self.surface.index_of(triangle[chosen], shares[chosen])
         return index[:, ::-1], distance.ravel()[chosen]
 
+    def containing(self, point: Floats, tolerance: float) -> tuple[float, float] | None:
+        """Return (j, i) of a point of the Earth, (3,), in one of the triangles around it."""
+        count = min(MOST_TRIED, len(self._drawn))
+        near = self._drawn[np.atleast_1d(self._tree.query(point, k=count)[1])]
+        a, b, c = np.moveaxis(self._points[self.surface.corners_of(near)], 1, 0)
+        shares = np.stack([np.cross(b, c), np.cross(c, a), np.cross(a, b)], axis=1) @ point
+        shares = shares / shares.sum(axis=1, keepdims=True)
+        best = int(np.argmax(shares.min(axis=1)))
+        if not shares[best].min() >= -tolerance or a[best] @ point < 0:
+            return None
+        weights = np.clip(shares[best], 0, None)
+        i, j = self.surface.index_of(near[best : best + 1], weights[None] / weights.sum())[0]
+        return float(j), float(i)
+
     def _try(
         self,
         points: Floats,
@@ -324,6 +340,17 @@ def locate_lonlat(
     """
     if not np.isfinite([lon, lat]).all():
         return None
+    found = _nearest_lonlat(field, lon, lat, tolerance)
+    if found is None and field.triangles is not None:
+        target = EARTH.positions(np.array(lon), np.array(lat))
+        found = _earth_locator(field).containing(target, tolerance)
+    return found
+
+
+def _nearest_lonlat(
+    field: Any, lon: float, lat: float, tolerance: float
+) -> tuple[float, float] | None:
+    """Return (j, i) of a place in the triangle to which walks lead."""
     surface = (finder := _earth_locator(field)).surface
     target = EARTH.positions(np.array(lon), np.array(lat))
     index, distance = finder.nearest(target[None])

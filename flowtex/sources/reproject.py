@@ -17,7 +17,8 @@ from flowtex.field.locate import EARTH as GLOBE
 from flowtex.field.locate import POLE_LATITUDE, turned
 from flowtex.field.steps import Steps, map_steps
 from flowtex.sources.datasets.coordinates import Places
-from flowtex.sources.maps import MapNodes, MeshMap, mesh_on_map, on_map
+from flowtex.sources.maps import MapNodes, on_map
+from flowtex.sources.mesh_maps import MeshMap, mesh_on_map, torn_grid
 
 Placed: TypeAlias = MapNodes | MeshMap
 #: Share of the spacing within which nodes lie on one meridian or parallel.
@@ -68,13 +69,21 @@ def _of_grid(field: FlowField, name: str) -> FlowField:
         places = Places(a, b, is_earth=True, is_line=True, why="")
         lon = np.where(np.isfinite(lines[0]), lines[0], lon)
     chosen = np.ix_(rows, columns)
+    torn = torn_grid(places, name)
+    projection = _map_of(field)
+    own = partial(_components, projection, lon, lat)
+    if torn is not None:
+        cells = np.unravel_index(torn.members, (field.shape[0] - 1, field.shape[1] - 1))
+        at_cells = {key: _cell_values(field, key, *cells) for key in field.on_cells}
+        on_mesh = partial(FlowField.from_triangles, torn.points, torn.triangles)
+        return _made(field, torn, own, chosen, partial(on_mesh, cell_scalars=at_cells))
     nodes = on_map(places, name)
     j, i = np.indices(field.shape, dtype=float)
-    cells = [np.floor(np.nan_to_num(nodes.at(at[chosen]))).astype(int) for at in (j, i)]
-    projection = _map_of(field)
+    rows, columns = (
+        np.floor(np.nan_to_num(nodes.at(at[chosen]))).astype(int)[:-1, :-1] for at in (j, i)
+    )
     make = partial(FlowField.from_arrays, nodes.points, periodic=nodes.periodic)
-    at_cells = {name: _cells(field, name, (cells[0], cells[1])) for name in field.on_cells}
-    own = partial(_components, projection, lon, lat)
+    at_cells = {key: _cell_values(field, key, rows, columns) for key in field.on_cells}
     return _made(field, nodes, own, chosen, partial(make, cell_scalars=at_cells))
 
 
@@ -259,10 +268,8 @@ def _lines(lon: Floats, lat: Floats) -> tuple[Floats, Floats] | None:
     return columns, rows
 
 
-def _cells(field: FlowField, name: str, cells: tuple[Indices, Indices]) -> Any:
-    """Return values of cells for the cells between nodes that lie in these cells of a field."""
-    rows = cells[0][:-1, :-1]
-    columns = cells[1][:-1, :-1]
+def _cell_values(field: FlowField, name: str, rows: Indices, columns: Indices) -> Any:
+    """Return values of some cells, by their rows and columns in a field."""
     return map_steps(field.scalars[name], lambda step: step[rows, columns])
 
 

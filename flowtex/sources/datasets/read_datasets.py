@@ -50,7 +50,8 @@ from flowtex.sources.datasets.values import (
     region_lines,
 )
 from flowtex.sources.datasets.vertical import LONGEST_NAME, is_section, read_section
-from flowtex.sources.maps import MapNodes, MeshMap, PlaneNodes, mesh_on_map, on_map
+from flowtex.sources.maps import MapNodes, PlaneNodes, on_map
+from flowtex.sources.mesh_maps import MeshMap, mesh_on_map, torn_grid
 from flowtex.sources.notices import Record
 from flowtex.sources.opening.dataset_files import Datasets, as_datasets
 
@@ -123,13 +124,12 @@ def read_datasets(
             )
         scalars = _scalars(flow)
         words = _words(flow, scalars, name)
-        by_regions = regions and flow.mesh is None and spread is None
-        arrays: GridArrays | TriangleArrays | Regions | None
-        if by_regions:
+        arrays: GridArrays | TriangleArrays | Regions | None = None
+        if regions and flow.mesh is None and spread is None:
             arrays = _regions(flow, scalars, projection, words)
-        else:
-            arrays = None
-        arrays = arrays or _whole(flow, scalars, projection, words, spread, uncertainty)
+        if arrays is None:
+            placed = _placed(flow, projection, regions=regions)
+            arrays = _whole(flow, scalars, placed, words, spread, uncertainty)
     record.notify()
     datasets.close()
     return arrays
@@ -185,14 +185,14 @@ def _words(flow: Flow, scalars: Mapping[str, _Scalar], name: str) -> dict[str, A
 def _whole(
     flow: Flow,
     scalars: Mapping[str, _Scalar],
-    projection: str | None,
+    placed: tuple[Placed, dict[str, Any]],
     words: dict[str, Any],
     spread: Callable[[int], Floats] | None,
     uncertainty: Any,
 ) -> GridArrays | TriangleArrays:
     count = flow.drawn.steps
     record = flow.record
-    nodes, arguments = _placed(flow, projection)
+    nodes, arguments = placed
     # Velocity and speed use the same components.
     read = _steps_of(flow)
     own = {key: LazySteps(count, s.read) for key, s in scalars.items()}
@@ -222,7 +222,7 @@ def _whole(
     arguments |= {"points": nodes.points, "velocity": velocity if count > 1 else velocity[0]}
     arguments |= {"times": flow.drawn.times, "scalars": extra, "cell_scalars": on_cells}
     arguments |= {"projection": nodes.projection, "reading": record.reading, **words}
-    return GridArrays(**arguments) if flow.mesh is None else TriangleArrays(**arguments)
+    return TriangleArrays(**arguments) if "triangles" in arguments else GridArrays(**arguments)
 
 
 def _steps_of(flow: Flow) -> LazySteps:
@@ -311,13 +311,21 @@ def _averaged(
     return replace(members[0], **changes), partial(_spread, sums)
 
 
-def _placed(flow: Flow, projection: str | None) -> tuple[Placed, dict[str, Any]]:
-    """Return the nodes of a flow on a map or in a plane, and arguments of its field."""
+def _placed(flow: Flow, projection: str | None, *, regions: bool) -> tuple[Placed, dict[str, Any]]:
+    """Return the nodes of a flow on a map or in a plane, and arguments of its field.
+
+    Those that are read by ``regions`` remain a grid.
+    """
     places = flow.places
     mesh = flow.mesh
     if mesh is None:
         if not places.is_earth:
             return PlaneNodes(np.stack([places.a, places.b], axis=-1)), _units(flow)
+        torn = None
+        if not regions:
+            torn = torn_grid(places, projection)
+        if torn is not None:
+            return torn, {"triangles": torn.triangles, **_units(flow)}
         on_grid = on_map(places, projection)
         return on_grid, {"periodic": on_grid.periodic, **_units(flow)}
     if not mesh.is_earth:

@@ -16,6 +16,8 @@ pytest.importorskip("cartopy")
 import cartopy.crs as ccrs
 from earth_data import components, winds
 from flows import half_known
+from map_places import turned_frame
+from map_places import winds as curvilinear_winds
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
@@ -137,6 +139,46 @@ def test_a_field_around_the_earth_has_no_hole_on_another_map(source: str | None)
         error = np.abs(drawn[:, 0] / 255 - np.clip(wanted, 0, 1))
         assert (np.ptp(drawn, axis=1) <= 2).mean() > 0.97
         assert np.quantile(error, 0.95) < 0.05
+
+
+@pytest.mark.parametrize(
+    "crs",
+    [
+        ccrs.PlateCarree(),
+        ccrs.PlateCarree(central_longitude=180),
+        ccrs.Mercator(),
+        ccrs.Robinson(),
+        ccrs.Mollweide(),
+        ccrs.EqualEarth(central_longitude=-60),
+    ],
+    ids=lambda crs: type(crs).__name__,
+)
+def test_a_rotated_grid_is_drawn_up_to_the_poles_and_edges_of_a_map(crs: Any) -> None:
+    lines = np.arange(-180.0, 180.0, 6.0), np.arange(-87.0, 88.0, 6.0)
+    frame = turned_frame(77.3, 38.3)
+    image, shot = shown(crs, curvilinear_winds(*frame.transform(*np.meshgrid(*lines))))
+    rng = np.random.default_rng(2)
+    lon = rng.uniform(-180.0, 180.0, 400)
+    lat = rng.choice([-1, 1], 400) * (90.0 - rng.uniform(0.0, 30.0, 400))
+    # Places beside the edge of the map, and at its poles.
+    middle = float(crs.proj4_params["lon_0"])
+    lon[:100] = middle + 180.0 - rng.uniform(-2.0, 2.0, 100)
+    lat[:100] = rng.uniform(-80.0, 80.0, 100)
+    own = np.abs(np.array(frame.transform(lon, lat, direction="INVERSE"))[1]) < 84.0
+    if isinstance(crs, ccrs.Mercator):
+        own &= np.abs(lat) < 84.0
+    x, y = pixel(image, lon, lat)
+    x = np.clip(np.floor(0.99 * (x - 120.0) + 120.0), 0, 239).astype(int)  # not on the outline
+    y = np.clip(np.floor(0.99 * (y - 90.0) + 90.0), 0, 179).astype(int)
+    drawn = shot[y[own], x[own]].astype(float)
+    # Grey, and not the ground, of which pixels on the outline have a part.
+    assert np.ptp(drawn, axis=1).max() < 128
+    grey = np.ptp(drawn, axis=1) <= 2
+    assert grey.mean() > 0.7
+    low, high = image.get_clim()
+    wanted = (np.hypot(*components(lon, lat))[own] - low) / (high - low)
+    error = np.abs(drawn[:, 0] / 255 - np.clip(wanted, 0, 1))
+    assert np.quantile(error[grey], 0.9) < 0.06
 
 
 def test_a_series_and_its_scalars_are_put_on_another_map() -> None:
