@@ -24,6 +24,14 @@ from flowtex.errors import FieldError
 
 warnings.simplefilter("ignore")
 folder = Path(sys.argv[1])
+# What reading loads is loaded once, and not in each fork.
+for name in ("file.vtu", "file.nc"):
+    path = folder / name
+    path.write_text(sys.argv[2])
+    try:
+        FlowField.from_file(path)
+    except FieldError:
+        pass
 for suffix in sorted(CLASS_READERS):
     path = folder / f"file{suffix}"
     path.write_text(sys.argv[2])
