@@ -389,6 +389,7 @@ def app() -> None:
         settle(path)
         path.mouse.click(590, 340)
         path.mouse.move(800, 470)
+        path.get_by_text("Path through this point").wait_for()
         settle(path)
         _page_picture(path, "app_path")
         narrow = opened((400, 760), "airfoil", address)
