@@ -128,16 +128,16 @@ def around_pole(
     Places are added. The last value is ``None`` where no triangle contains the pole.
     """
     number, weights = _containing(places, triangles, sign)
-    if not len(number):
-        return (triangles, members), None
     corner = np.argmax(weights, axis=1)
     on_node = weights.max(axis=1) > 1 - ON_SIDE
-    if on_node.any():
-        at_pole = triangles[number[on_node], corner[on_node]]
-        pole = int(at_pole[0])
-        # Grids repeat a node at a pole.
-        others = np.flatnonzero(_distance(places, sign) < 2 * BESIDE_POLE)
-        triangles = np.where(np.isin(triangles, [*at_pole, *others]), pole, triangles)
+    # Grids repeat a node at a pole, and another map has opened the pole into nodes beside it.
+    beside_pole = np.flatnonzero(_distance(places, sign) < 2 * BESIDE_POLE)
+    is_pole = np.isin(triangles, [*triangles[number[on_node], corner[on_node]], *beside_pole])
+    if not len(number) and not is_pole.any():
+        return (triangles, members), None
+    if is_pole.any():
+        pole = int(triangles[is_pole][0])
+        triangles = np.where(is_pole, pole, triangles)
         whole = (triangles == pole).sum(axis=1) < 2
         triangles, members = triangles[whole], members[whole]
         number = number[:0]

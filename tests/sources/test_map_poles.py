@@ -141,4 +141,6 @@ def test_a_field_goes_from_one_map_to_another_with_its_poles() -> None:
     globe = reprojected(first, GLOBE)
     speed = np.linalg.norm(np.asarray(globe.velocity[0]), axis=-1)
     wanted = np.linalg.norm(turning(globe.points / EARTH_RADIUS), axis=-1)
-    assert speed[globe.valid] == pytest.approx(wanted[globe.valid], abs=1e-3 * RATE)
+    # Half-way along the diagonal of a cell of 4 degrees, linear vectors are shorter by the cosine.
+    shorter = 1.0 - np.cos(np.radians(2.0 * np.sqrt(2.0)))
+    assert speed[globe.valid] == pytest.approx(wanted[globe.valid], abs=1.05 * shorter * RATE)
