@@ -118,7 +118,9 @@ export class Programs {
     gl.useProgram(program);
     SAMPLERS.forEach((name, n) => {
       const sampler = entry.uniforms.get(name);
-      if (sampler && sampler.type !== gl.FLOAT_VEC2) gl.uniform1i(sampler.location, n); // as u_nodes of traces
+      // Some programs have vectors of these names, as u_nodes of traces and u_along of means.
+      const isVector = sampler?.type === gl.FLOAT_VEC2 || sampler?.type === gl.INT_VEC2;
+      if (sampler && !isVector) gl.uniform1i(sampler.location, n);
     });
     entry.ready = true;
   }

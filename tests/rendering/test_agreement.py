@@ -84,3 +84,4 @@ def test_two_hundredths_more_would_be_noticed(name: str) -> None:
 def test_webgl_agrees_with_numpy(client: ClientPage, name: str) -> None:
     theirs = drawn_by_webgl(client, (VIEWS | DEEP)[name], judged(name)[0])
     agree(theirs, name, COARSER if client.page.evaluate(OWN) else 1.0)
+    assert client.page.evaluate("viewers[0].graphics.context.getError()") == 0

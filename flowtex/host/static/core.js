@@ -219,12 +219,13 @@ gl.getProgramInfoLog(program)].filter(Boolean).join(`
 entry.shaders=[];let count2=gl.getProgramParameter(program,gl.ACTIVE_UNIFORMS);for(let n=0;n<count2;n+=1){let info=gl.getActiveUniform(
 program,n),location=info&&gl.getUniformLocation(program,info.name);!info||!location||entry.uniforms.set(info.name.replace(
 /\[0\]$/,""),{location,type:info.type})}gl.useProgram(program),SAMPLERS.forEach((name,n)=>{let sampler=entry.uniforms.get(
-name);sampler&&sampler.type!==gl.FLOAT_VEC2&&gl.uniform1i(sampler.location,n)}),entry.ready=!0}use(entry,values){let gl=this.
-graphics.context;gl.useProgram(entry.program);for(let[name,value]of Object.entries(values)){let uniform=entry.uniforms.get(
-name);if(!uniform)continue;let{location,type}=uniform,numbers=typeof value=="object"?value:[Number(value)];type===gl.FLOAT?
-gl.uniform1fv(location,numbers):type===gl.FLOAT_VEC2?gl.uniform2fv(location,numbers):type===gl.FLOAT_VEC3?gl.uniform3fv(
-location,numbers):type===gl.FLOAT_VEC4?gl.uniform4fv(location,numbers):type===gl.FLOAT_MAT4?gl.uniformMatrix4fv(location,
-!1,numbers):type===gl.INT_VEC2?gl.uniform2iv(location,numbers):gl.uniform1i(location,numbers[0])}}};var OUTLINE_SAMPLES=4,FRAME_MS=45,MOST_NUMBERS=[4,68],SHARED=Symbol.for("flowtex.gl/3");function drawsFloats(gl){return[
+name),isVector=sampler?.type===gl.FLOAT_VEC2||sampler?.type===gl.INT_VEC2;sampler&&!isVector&&gl.uniform1i(sampler.location,
+n)}),entry.ready=!0}use(entry,values){let gl=this.graphics.context;gl.useProgram(entry.program);for(let[name,value]of Object.
+entries(values)){let uniform=entry.uniforms.get(name);if(!uniform)continue;let{location,type}=uniform,numbers=typeof value==
+"object"?value:[Number(value)];type===gl.FLOAT?gl.uniform1fv(location,numbers):type===gl.FLOAT_VEC2?gl.uniform2fv(location,
+numbers):type===gl.FLOAT_VEC3?gl.uniform3fv(location,numbers):type===gl.FLOAT_VEC4?gl.uniform4fv(location,numbers):type===
+gl.FLOAT_MAT4?gl.uniformMatrix4fv(location,!1,numbers):type===gl.INT_VEC2?gl.uniform2iv(location,numbers):gl.uniform1i(location,
+numbers[0])}}};var OUTLINE_SAMPLES=4,FRAME_MS=45,MOST_NUMBERS=[4,68],SHARED=Symbol.for("flowtex.gl/3");function drawsFloats(gl){return[
 "EXT_color_buffer_float","EXT_color_buffer_half_float"].some(name=>gl.getExtension(name)!==null)}var Graphics=class{canvas=document.
 createElement("canvas");gl;programs;users=new Set;waiting=new Set;common=new Map;stock=new Map;tracings=new Map;objects=0;isLost=!1;scheduled=0;picker=null;smooth=null;constructor(){
 this.canvas.width=this.canvas.height=16;let gl=this.canvas.getContext("webgl2",{alpha:!0,antialias:!1,powerPreference:"h\

@@ -152,11 +152,11 @@ if(t.isContextLost())return;let i=[...e.shaders.map(c=>t.getShaderInfoLog(c)),t.
 `);e.error=i||"the driver gave no reason";return}for(let o of e.shaders)this.graphics.free("Shader",o);e.shaders=[];let s=t.
 getProgramParameter(r,t.ACTIVE_UNIFORMS);for(let o=0;o<s;o+=1){let i=t.getActiveUniform(r,o),c=i&&t.getUniformLocation(r,
 i.name);!i||!c||e.uniforms.set(i.name.replace(/\[0\]$/,""),{location:c,type:i.type})}t.useProgram(r),Q.forEach((o,i)=>{let c=e.
-uniforms.get(o);c&&c.type!==t.FLOAT_VEC2&&t.uniform1i(c.location,i)}),e.ready=!0}use(e,t){let r=this.graphics.context;r.
-useProgram(e.program);for(let[n,s]of Object.entries(t)){let o=e.uniforms.get(n);if(!o)continue;let{location:i,type:c}=o,
-l=typeof s=="object"?s:[Number(s)];c===r.FLOAT?r.uniform1fv(i,l):c===r.FLOAT_VEC2?r.uniform2fv(i,l):c===r.FLOAT_VEC3?r.uniform3fv(
-i,l):c===r.FLOAT_VEC4?r.uniform4fv(i,l):c===r.FLOAT_MAT4?r.uniformMatrix4fv(i,!1,l):c===r.INT_VEC2?r.uniform2iv(i,l):r.uniform1i(
-i,l[0])}}};var mo=4,po=45,fo=[4,68],bo=Symbol.for("flowtex.gl/3");function Fn(a){return["EXT_color_buffer_float","EXT_color_buffer_\
+uniforms.get(o),l=c?.type===t.FLOAT_VEC2||c?.type===t.INT_VEC2;c&&!l&&t.uniform1i(c.location,i)}),e.ready=!0}use(e,t){let r=this.
+graphics.context;r.useProgram(e.program);for(let[n,s]of Object.entries(t)){let o=e.uniforms.get(n);if(!o)continue;let{location:i,
+type:c}=o,l=typeof s=="object"?s:[Number(s)];c===r.FLOAT?r.uniform1fv(i,l):c===r.FLOAT_VEC2?r.uniform2fv(i,l):c===r.FLOAT_VEC3?
+r.uniform3fv(i,l):c===r.FLOAT_VEC4?r.uniform4fv(i,l):c===r.FLOAT_MAT4?r.uniformMatrix4fv(i,!1,l):c===r.INT_VEC2?r.uniform2iv(
+i,l):r.uniform1i(i,l[0])}}};var mo=4,po=45,fo=[4,68],bo=Symbol.for("flowtex.gl/3");function Fn(a){return["EXT_color_buffer_float","EXT_color_buffer_\
 half_float"].some(e=>a.getExtension(e)!==null)}var xr=class{canvas=document.createElement("canvas");gl;programs;users=new Set;waiting=new Set;common=new Map;stock=new Map;tracings=new Map;objects=0;isLost=!1;scheduled=0;picker=null;smooth=null;constructor(){
 this.canvas.width=this.canvas.height=16;let e=this.canvas.getContext("webgl2",{alpha:!0,antialias:!1,powerPreference:"hi\
 gh-performance"});this.gl=e&&Fn(e)?e:null,this.programs=new Se(this),this.gl&&this.programs.findFeatures(),this.canvas.addEventListener(
