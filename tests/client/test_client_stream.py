@@ -215,7 +215,7 @@ def test_pictures_are_those_of_a_page_that_holds_all(
     # Triangles may be chosen by a share more exactly, which moves a colour by less than is seen.
     streamed = shown.pixels()
     off = np.abs(streamed - held(browser, tmp_path / "whole.html")).max(axis=-1)
-    assert (off > 4).mean() < 0.002
+    assert (off > 3).mean() < 0.002
     assert streamed.std() > 10
     assert tiles_of(server)
 
@@ -272,7 +272,7 @@ def test_time_steps_come_when_they_are_shown(
     # A speed that follows from the rounded flow moves a colour by less than is seen. The texture
     # leaves a colour its chroma, so a step of the map is at most a quarter wider than in grey.
     off = np.abs(held(browser, tmp_path / "whole.html", "1") - last).max(axis=-1)
-    assert (off > 3).mean() < 0.002
+    assert (off > 4).mean() < 0.002
 
 
 def broken(data: bytes) -> bytes:
