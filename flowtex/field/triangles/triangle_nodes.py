@@ -124,7 +124,7 @@ def known_means(values: Floats, summed: Callable[[Floats], Floats]) -> Floats:
     flat = values.reshape(len(values), -1)
     finite = np.ones((len(flat), 1), dtype=bool)
     if not np.isfinite(flat).all():
-        finite = np.isfinite(flat).all(axis=1, keepdims=True)
+        finite = np.asarray(np.isfinite(flat).all(axis=1, keepdims=True))
         flat = np.where(finite, flat, 0.0)
     sums = summed(flat)
     total = summed(finite.astype(np.float64))
