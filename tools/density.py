@@ -19,9 +19,9 @@ from pathlib import Path
 LIMITS = {
     "comprehensions": 20.5,
     "conditional expressions": 5.8,
-    "parallel assignments": 2.0,
-    "bodies over 40 lines": 15.0,
-    "nested comprehensions": 45.0,
+    "parallel assignments": 1.5,
+    "bodies over 40 lines": 13.0,
+    "nested comprehensions": 41.0,
     "nested conditional expressions": 3.0,
 }
 #: Of these the number for each 1,000 lines of code is limited.

@@ -139,7 +139,8 @@ def around_pole(
         pole = int(triangles[is_pole][0])
         triangles = np.where(is_pole, pole, triangles)
         whole = (triangles == pole).sum(axis=1) < 2
-        triangles, members = triangles[whole], members[whole]
+        triangles = triangles[whole]
+        members = members[whole]
         number = number[:0]
     else:
         corners = places.nodes[triangles[number[:1]], 0]
@@ -168,7 +169,8 @@ def _containing(places: MeshPlaces, triangles: Indices, sign: int) -> tuple[Indi
     near = np.flatnonzero(beside_pole[triangles].all(axis=1))
     x, y, z = np.moveaxis(p[triangles[near]], -1, 0)
     # Great circles are straight in this plane, and the pole is its origin.
-    x, y = x / z, y / z
+    x = x / z
+    y = y / z
     shares = np.roll(x, -1, axis=1) * np.roll(y, -2, axis=1)
     shares -= np.roll(x, -2, axis=1) * np.roll(y, -1, axis=1)
     area = shares.sum(axis=1, keepdims=True)
@@ -187,7 +189,8 @@ def _divided(
     radius = AROUND * _distance(places, sign)[triangles[at_pole]].max(initial=0.0)
     near = (_distance(places, sign) < radius)[triangles].all(axis=1)
     far = triangles[~near], members[~near]
-    part, owner = triangles[near], members[near]
+    part = triangles[near]
+    owner = members[near]
     for _ in range(MOST_DIVISIONS):
         sides = np.sort(np.stack([part, np.roll(part, -1, axis=1)], axis=-1), axis=-1)
         pairs, number = np.unique(sides.reshape(-1, 2), axis=0, return_inverse=True)

@@ -233,18 +233,22 @@ def lines_on_map(places: Places, projection: Projection) -> NodeLines:
     turn = turn[columns]
     least = SAME_LINE * float(np.median(np.diff(turn))) if len(turn) > 1 else 0.0
     apart = (np.diff(turn, prepend=-360.0) > least) & (turn <= 360.0 - least)
-    columns, turn = columns[apart], turn[apart]
-    count, steps = len(turn), np.diff(turn, append=360.0)
+    columns = columns[apart]
+    turn = turn[apart]
+    count = len(turn)
+    steps = np.diff(turn, append=360.0)
     widest = int(np.argmax(steps))
     gap = steps[widest] / max(steps[widest - 1], steps[(widest + 1) % count])
-    closed, has_edge = count >= LEAST_RING and gap <= MOST_GAP, _has_edge(projection)
+    closed = count >= LEAST_RING and gap <= MOST_GAP
+    has_edge = _has_edge(projection)
     west = projection.center[0] - 180.0
     first = 0 if closed else (widest + 1) % count
     if closed and has_edge:
         first = int(np.argmin((lon[0] + turn - west) % 360.0))
     columns = np.roll(columns, -first)
     lon = lon[0] + np.roll(turn + 360.0 * (np.arange(count) < first), -first)
-    gaps, blank = _gaps(np.diff(lon)), math.ceil(math.sqrt(places.a.size / COARSE_NODES))
+    gaps = _gaps(np.diff(lon))
+    blank = math.ceil(math.sqrt(places.a.size / COARSE_NODES))
     # Columns to insert: before which, where, between which, and the share of the way there.
     new: list[tuple[Any, ...]]
     new = [(k + 1, np.nan, k, k, 0.0) for k in np.flatnonzero(gaps) for _ in range(blank)]
@@ -253,7 +257,8 @@ def lines_on_map(places: Places, projection: Projection) -> NodeLines:
         lon -= 360.0 * np.floor((lon[0] - west) / 360.0)
         cut = count if closed else int(np.searchsorted(lon, west + 360.0 + least))
         if closed or (cut < count and not gaps[cut - 1]):
-            a, b = cut - 1, cut % count
+            a = cut - 1
+            b = cut % count
             step = (lon[b] - lon[a]) % 360.0
             share = (west + 360.0 - lon[a]) / step
             near = np.abs((lon - west + 180.0) % 360.0 - 180.0) < SAME_LINE * step
@@ -265,20 +270,20 @@ def lines_on_map(places: Places, projection: Projection) -> NodeLines:
         lon[cut:] -= 360.0
     elif closed:
         new += [(count, lon[0], 0, 0, 0.0)]
-    ends, share = np.stack([columns, columns]), np.zeros(count)
+    ends = np.stack([columns, columns])
+    share = np.zeros(count)
     if new:
         at, more, one, other, shares = (np.array(values) for values in zip(*new, strict=True))
-        lon, share, near = (
-            np.insert(lon, at, more),
-            np.insert(share, at, shares),
-            np.insert(near, at, 0),
-        )
+        lon = np.insert(lon, at, more)
+        share = np.insert(share, at, shares)
+        near = np.insert(near, at, 0)
         ends = np.insert(ends, at, columns[np.stack([one, other])], axis=1)
     if has_edge:
         lon = np.clip(lon, west + INSIDE, west + 360.0 - INSIDE)
     periodic = "i" if closed and (not has_edge or projection.family in CYLINDERS) else ""
     missing = np.repeat(np.flatnonzero(_gaps(np.diff(lat))) + 1, blank)
-    rows, lat = np.insert(np.arange(len(lat)), missing, missing), np.insert(lat, missing, np.nan)
+    rows = np.insert(np.arange(len(lat)), missing, missing)
+    lat = np.insert(lat, missing, np.nan)
     return NodeLines(lon[~near], lat, rows, ends[:, ~near], share[~near], projection, periodic)
 
 
@@ -321,11 +326,13 @@ def _parts(
     latitudes, NaN where nodes are blank, and the nodes; ``None`` where there is nothing to part.
     """
     if axis == 0:
-        lon, lat = lon.T, lat.T
+        lon = lon.T
+        lat = lat.T
     parted = np.zeros((len(lon), lon.shape[1] - 1), dtype=bool)
     if not is_line:
         parted = data_gaps(lon, lat)
-    places, sides = np.stack([lon, lat], axis=-1), np.zeros((2, 0))
+    places = np.stack([lon, lat], axis=-1)
+    sides = np.zeros((2, 0))
     row = column = np.zeros(0, dtype=np.intp)
     if not projection.is_globe:
         points = shown_positions(projection, lon, lat).reshape(-1, 3)
@@ -335,21 +342,27 @@ def _parts(
         row, column = np.nonzero(stretched & ~parted)
         ends = places[row, column], places[row, column + 1]
         torn, *shares = tears(projection, *ends, straight=not is_line)
-        row, column, sides = row[torn], column[torn], np.array(shares)
+        row = row[torn]
+        column = column[torn]
+        sides = np.array(shares)
         parted |= wide
         parted[row, column] = True
         ends = ends[0][torn], ends[1][torn]
         length = np.linalg.norm(points[nodes[row, column]] - points[nodes[row, column + 1]], axis=1)
         is_open = _opens(projection, ends, sides, LEAST_OPENING * length, straight=not is_line)
-        row, column, sides = row[is_open], column[is_open], sides[:, is_open]
+        row = row[is_open]
+        column = column[is_open]
+        sides = sides[:, is_open]
     columns = np.flatnonzero(parted.any(axis=0))
     if not len(columns):
         return None
-    start, stop = np.zeros((len(lon), len(columns))), np.ones((len(lon), len(columns)))
+    start = np.zeros((len(lon), len(columns)))
+    stop = np.ones((len(lon), len(columns)))
     number = np.searchsorted(columns, column)
     start[row, number], stop[row, number] = sides
     for beside in (-1, 1):  # in the row where a tear ends
-        near, last = np.clip(row + beside, 0, len(lon) - 1), parted.shape[1] - 1
+        near = np.clip(row + beside, 0, len(lon) - 1)
+        last = parted.shape[1] - 1
         whole = ~(parted[near, column - (column > 0)] | parted[near, np.minimum(column + 1, last)])
         whole &= ~parted[near, column]
         at = near[whole], number[whole]
@@ -359,11 +372,14 @@ def _parts(
     blank = min(math.ceil(math.sqrt(lon.size / COARSE_NODES)), most)
     copies = np.ones(lon.shape[1], dtype=int)
     copies[columns] += blank
-    chosen, first = np.repeat(np.arange(len(copies)), copies), np.cumsum(copies) - copies
+    chosen = np.repeat(np.arange(len(copies)), copies)
+    first = np.cumsum(copies) - copies
     all_shares = np.linspace(start, stop, blank + 2, axis=-1)
     row, number, extra = np.nonzero((all_shares > 0) & (all_shares < 1))
-    share, column = all_shares[row, number, extra], columns[number]
-    one, other = np.stack([row, column]), np.stack([row, column + 1])
+    share = all_shares[row, number, extra]
+    column = columns[number]
+    one = np.stack([row, column])
+    other = np.stack([row, column + 1])
     new = np.stack([row, first[column] + extra])
     ends = places[tuple(one)], places[tuple(other)]
     places = places[:, chosen]

@@ -86,7 +86,8 @@ def mesh_on_map(
         mesh = MeshPlaces.of_nodes(lon, lat, -180.0)
         members = np.arange(len(triangles))
         points = projection.positions(lon, lat)
-        nodes, weights = mesh.nodes, mesh.weights
+        nodes = mesh.nodes
+        weights = mesh.weights
         return MeshMap(
             projection, points, triangles, members, nodes, weights, lon, lat, 0, len(lon)
         )
@@ -180,7 +181,8 @@ def _within_latitudes(
         crossed = outside.any(axis=1) & ~outside.all(axis=1)
         if not outside.any():
             continue
-        part, owner = triangles[crossed], members[crossed]
+        part = triangles[crossed]
+        owner = members[crossed]
         # One corner is on the other side than two.
         is_lone = outside[crossed] == (outside[crossed].sum(axis=1) == 1)[:, None]
         order = (np.argmax(is_lone, axis=1)[:, None] + np.arange(3)) % 3
@@ -228,7 +230,8 @@ def _along_tears(
     points = shown_positions(projection, places.lon, places.lat)
     points[poles] = 0.0
     is_shown = np.isfinite(points[triangles, 0]).all(axis=1)
-    triangles, members = triangles[is_shown], members[is_shown]
+    triangles = triangles[is_shown]
+    members = members[is_shown]
     ends = np.sort(_sides(triangles), axis=-1)
     ends_there = np.isin(ends, poles).any(axis=-1)
     points[poles] = np.nan
