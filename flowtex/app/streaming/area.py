@@ -473,6 +473,6 @@ def _appearance(pane: FlowHandle) -> tuple[object, ...]:
             built.append(getattr(settings, row.name))
     baked: tuple[Any, ...] = ()
     if settings.noise != "procedural":
-        baked = (settings.seed, settings.tiles)
+        baked = (settings.seed, settings.tiles, settings.resolution)
     look = scene.appearance, scene.scalar_limits
     return (*built, *baked, scene.field, *look, id(scene.image))

@@ -253,3 +253,24 @@ def test_a_camera_of_the_place_before_is_late() -> None:
     app.area.take_camera(shown.to_dict(), "page", place)
     assert app.viewport.camera == shown
     app.close()
+
+
+@pytest.mark.parametrize("name", ["seed", "resolution"])
+def test_a_noise_texture_is_sent_again_for_a_seed_and_a_resolution(
+    monkeypatch: pytest.MonkeyPatch, name: str
+) -> None:
+    """With other noise they are numbers that the page has by itself."""
+    app = small_page(small())
+    app.area.begin("browser")
+    told = Told(app, monkeypatch)
+    settings = app.viewport.settings
+    settings.update(**{name: 33})
+    app.area.changed()
+    assert "scenes" not in told.taken()
+    settings.update(noise="texture", resolution=64)
+    app.area.changed()
+    (before,) = told.taken()["scenes"]
+    settings.update(**{name: 128})
+    app.area.changed()
+    (after,) = told.taken()["scenes"]
+    assert before["parts"] != after["parts"]
