@@ -82,7 +82,8 @@ class Texts(NamedTuple):
     title_width: float
     title_height: float
     label_width: float  #: Width of the longest label.
-    end_width: float  #: Width of the longer text at an end for values beyond, with its line.
+    end_width: float  #: Width of the longest text beside a swatch of its own, with its line.
+    end_rows: int  #: Rows of these texts below a horizontal bar.
 
 
 def checked_bar_options(options: Mapping[str, Any] | None) -> dict[str, Any]:
@@ -283,11 +284,25 @@ def _fit_texts(
     label_width = 0
     for text in labels:
         label_width = max(label_width, _size(label, text, dpi)[0])
+    beside = side_texts(bar, options)
     end_width = 0.0
+    for text in beside:
+        end_width = max(end_width, _size(label, text, dpi)[0] + END_LINE * em)
+    end_rows = min(len(beside), 1)
+    if bar.GetDrawNanAnnotation() and "above_label" in options:
+        end_rows = 2  # VTK writes one below the other
+    return Texts(em, pad, width, height, label_width, end_width, end_rows)
+
+
+def side_texts(bar: vtkScalarBarActor, options: Mapping[str, Any]) -> list[str]:
+    """Return the texts of swatches beyond the colours: of the ends, and of missing values."""
+    texts = []
     for name in END_LABELS:
         if name in options:
-            end_width = max(end_width, _size(label, options[name], dpi)[0] + END_LINE * em)
-    return Texts(em, pad, width, height, label_width, end_width)
+            texts.append(str(options[name]))
+    if bar.GetDrawNanAnnotation():
+        texts.append(bar.GetNanAnnotation())
+    return texts
 
 
 def _title_room(view_width: int, pad: int, options: Mapping[str, Any]) -> float:
@@ -343,8 +358,8 @@ def _horizontal_box(
     sides = max((texts.title_width - width) / 2, label_over)
     top = ratio * height + 3 * texts.pad + texts.em + texts.title_height
     below = 0.0
-    if texts.end_width:
-        below = (1 + END_LINE) * texts.em
+    if texts.end_rows:
+        below = (texts.end_rows + END_LINE) * texts.em
     return Box(width, height, sides, sides, max(top - height, 0.0), below), ratio
 
 

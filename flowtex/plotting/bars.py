@@ -12,8 +12,8 @@ import pyvista as pv
 from flowtex._util.array_types import Bytes, Indices
 from flowtex._util.colours import ZERO_SHARE, rounded_ends
 from flowtex._util.pyvista_internals import mappers_of_bar, set_range_of_bar
-from flowtex.plotting.bar_layout import END_LABELS, first_arguments, place_bar
-from flowtex.rendering.vtk.flow_mapper import Ends, FlowMapper, NormTable
+from flowtex.plotting.bar_layout import first_arguments, place_bar, side_texts
+from flowtex.rendering.vtk.flow_mapper import Ends, FlowMapper, Lacking, NormTable
 
 COMPARED = 64  #: Number of colours by which maps are compared.
 SAME_BYTES = 4  #: Difference of bytes up to which two colours are one.
@@ -115,7 +115,8 @@ class FlowBar:
         ends = list(map(_ends, sharing))
         bar = self._bars[self.key]
         limits = self._mapper.scalar_range
-        shown = (bar.GetLookupTable(), limits, ends, settings)
+        lacking = _first_lacking(flows)
+        shown = (bar.GetLookupTable(), limits, ends, settings, lacking)
         if shown == self._shown:
             return
         own = self._mapper.lookup_table
@@ -131,6 +132,7 @@ class FlowBar:
         bar.SetLookupTable(table)
         self._shown = (table, *shown[1:])
         self._draw_beyond(table, limits, _joined(each.values for each in ends))
+        self._draw_lacking(table, lacking)
         self._draw_labels(has_marks=isinstance(own, NormTable))
 
     def _draw_beyond(
@@ -152,13 +154,29 @@ class FlowBar:
         bar.SetDrawBelowRangeSwatch(below)
         bar.SetDrawAboveRangeSwatch(above)
 
+    def _draw_lacking(self, table: pv.LookupTable, lacking: Lacking | None) -> None:
+        """Draw the colour of places without a value, or without data, where there are some."""
+        table.nan_color = self._mapper.lookup_table.nan_color
+        bar = self._bars[self.key]
+        if "nan_annotation" in self._options:  # PyVista has followed it
+            return
+        bar.SetDrawNanAnnotation(lacking is not None)
+        if lacking is not None:
+            table.nan_color = lacking.color
+            bar.SetNanAnnotation(lacking.text)
+
     def _draw_labels(self, *, has_marks: bool) -> None:
         """Write numbers beside the bar, or the texts of the marks of a norm."""
         # Others are marks without a text; VTK writes them on the side without labels.
         has_labels = self._options.get("n_labels", 1) >= 1
-        has_ends = not self._options.keys().isdisjoint(END_LABELS)
         bar = self._bars[self.key]
-        bar.SetDrawAnnotations((has_marks and has_labels) or has_ends)
+        has_texts = bool(side_texts(bar, self._options))
+        bar.SetDrawAnnotations((has_marks and has_labels) or has_texts)
+        # VTK's own texts would appear with those of others.
+        if "below_label" not in self._options:
+            bar.SetBelowRangeAnnotation("")
+        if "above_label" not in self._options:
+            bar.SetAboveRangeAnnotation("")
         bar.SetDrawTickLabels(not has_marks and has_labels)
         bar.SetTextPosition(int(not has_marks))
 
@@ -217,6 +235,14 @@ def _remember_meshes(mappers: Iterable[Any]) -> None:
         return
     for mapper in mappers:
         _mesh_ranges[mapper] = mapper.scalar_range
+
+
+def _first_lacking(flows: Iterable[FlowMapper]) -> Lacking | None:
+    """Return what the first flow lacks that lacks something."""
+    for mapper in flows:
+        if mapper.lacking is not None:
+            return mapper.lacking
+    return None
 
 
 def _flows(mappers: Iterable[Any]) -> list[FlowMapper]:

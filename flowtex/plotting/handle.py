@@ -10,14 +10,17 @@ import numpy as np
 import pyvista as pv
 
 from flowtex._util.arguments import checked_number
+from flowtex._util.colours import rgb
 from flowtex.errors import FieldError, notify
 from flowtex.field.options import FieldOptions
+from flowtex.field.validation import NO_DATA
 from flowtex.plotting.bar_layout import checked_bar_options
 from flowtex.plotting.bars import FlowBar
 from flowtex.plotting.overlay import MapOverlay, StructureOverlay
+from flowtex.rendering.map_overlay import missing_colour
 from flowtex.rendering.shaders import const
 from flowtex.rendering.vtk import FlowSurface, lookup_table, surface_mesh, use_flow_mapper
-from flowtex.rendering.vtk.flow_mapper import Ends
+from flowtex.rendering.vtk.flow_mapper import Ends, Lacking
 from flowtex.rendering.vtk.frame import FrameSteps, Step, weak_callback
 from flowtex.scene.fields import read_field, share_field
 from flowtex.scene.options import Appearance, AppearanceAttributes
@@ -369,7 +372,18 @@ class FlowHandle(AppearanceAttributes):
     def _look_at_bar(self) -> None:
         """Show the mean colours of the picture in the bar, which the texture changes."""
         settings = self.settings.strength, self.settings.contrast, self.settings.noise
+        self.actor.mapper.lacking = self._lacking
         self.bar.look(lambda: self.scene.legend_colours, settings)
+
+    @property
+    def _lacking(self) -> Lacking | None:
+        """What the bar says of missing values of the flow, or else of the map without data."""
+        if self.scene.lacks_values:
+            return Lacking(NO_DATA, rgb(self.scene.appearance.nan_color))
+        if self._map.has_missing:
+            colour = missing_colour(self._renderer.GetBackground())
+            return Lacking(NO_DATA, tuple(colour.tolist()))
+        return None
 
     def _draw(self) -> None:
         if self._plotter is not None:

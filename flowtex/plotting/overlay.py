@@ -226,6 +226,11 @@ class MapOverlay(Overlay):
             if is_drawn(getattr(appearance, option)) and (forms := self._forms_of(option)):
                 self._add_lines(forms, stroke.width, stroke.color, stroke.opacity)
 
+    @property
+    def has_missing(self) -> bool:
+        """Whether places without data are drawn, which are no land."""
+        return bool(self._missing)
+
     def _forms_of(self, option: str) -> tuple[tuple[float, pv.PolyData], ...]:
         """Return the lines of an option, coarse to fine, made once; none far from a coast."""
         has_globe = self._radius is not None

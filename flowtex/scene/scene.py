@@ -41,7 +41,7 @@ from flowtex.textures.images import as_picture, load_image
 from flowtex.textures.texture_set import TextureSet, check_noise
 from flowtex.textures.tiles.pyramid import Pyramid
 from flowtex.textures.tiles.shared import coarsened_field, shared_pyramid
-from flowtex.textures.value_ranges import drawn_speeds, ends_of, usual_ends, widened
+from flowtex.textures.value_ranges import drawn_speeds, ends_of, usual_ends, valued_places, widened
 from flowtex.trace.slices import TraceSlices
 from flowtex.trace.store import SliceStore, chosen_lines, shared_store
 
@@ -84,6 +84,7 @@ class Scene:
         check_noise(field, self.settings.noise)
         check_structure(field, self.settings)
         self._structure: Structure | None = None
+        self._lacks: dict[tuple[str, bool], bool] = {}
         self._ranges: dict[tuple[str, bool, bool], tuple[float, float]] = {}
         self._kept: dict[tuple[str, bool], tuple[float, float]] = {}
         self._pyramid: Pyramid | None = None
@@ -478,17 +479,26 @@ class Scene:
         """Values of the valid nodes, or of the volume that they cut, at all times."""
         field = self.field
         typical = self.field.typical
-        # Triangles have a value each; a cell of a grid has the place of its first node.
-        on_triangles = name in field.on_cells and field.triangles is not None
-        if on_triangles:
-            valid = field.surface.cells[None]
-        else:
-            valid = field.valid
-        if (values := typical.volume_values.get(name)) is not None:
-            return values
+        in_volume = typical.volume_values.get(name)
+        if in_volume is not None:
+            return in_volume
         if self.pyramid is None or name in self.field.scalars:
-            return np.asarray(np.asarray(self.scalar_steps(name, typical))[:, valid])
+            values = np.asarray(self.scalar_steps(name, typical))
+            return np.asarray(values[:, valued_places(field, name)])
         return drawn_speeds(typical, self.whole)
+
+    @property
+    def lacks_values(self) -> bool:
+        """Whether the scalar is missing at a valid node of the drawn surface at some time."""
+        name = self.scalar_name
+        if name is None or name not in self.field.scalars:  # the speed, which all nodes have
+            return False
+        key = (name, self.pyramid is None)
+        if key not in self._lacks:
+            whole = self.whole.typical
+            values = np.asarray(self.scalar_steps(name, whole))
+            self._lacks[key] = bool(np.isnan(values[:, valued_places(whole, name)]).any())
+        return self._lacks[key]
 
     def copy(self) -> Scene:
         """Return an independent scene that shows the same, for a thread."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from flowtex._util.array_types import Floats
+from flowtex._util.array_types import Bools, Floats
 from flowtex._util.arrays import norm
 from flowtex.field import FlowField
 from flowtex.textures.tiles.shared import has_pyramid
@@ -76,6 +76,16 @@ def widened(ends: tuple[float, float] | None, field: FlowField, name: str) -> tu
     if size > 0:
         return (low - WIDENED_SHARE * size, high + WIDENED_SHARE * size)
     return (0.0, 1.0)
+
+
+def valued_places(field: FlowField, name: str) -> Bools:
+    """Return where a scalar has values on the surface, as an index of one of its steps.
+
+    Triangles have a value each; a cell of a grid has the place of its first node.
+    """
+    if name in field.on_cells and field.triangles is not None:
+        return field.surface.cells[None]
+    return field.valid
 
 
 def drawn_speeds(field: FlowField, root: FlowField) -> Floats:

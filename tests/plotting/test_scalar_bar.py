@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 import pyvista as pv
+from earth_fields import ocean, winds
 from matplotlib.colors import BoundaryNorm
 
 from flowtex import FieldError, FlowField
@@ -256,3 +257,50 @@ def test_a_bar_of_levels_with_values_beyond_them_is_placed(plotter: Any) -> None
     [bar] = plotter.scalar_bars.values()
     assert bar.GetWidth() != pytest.approx(0.08)  # which it has before
     assert bar.GetDrawAboveRangeSwatch()
+
+
+def swatch_rows(plotter: Any, colour: tuple[int, int, int]) -> Any:
+    """Return the rows of the picture that have a colour at the left, where the bar is."""
+    shot = plotter.screenshot(return_img=True).astype(int)
+    left = shot[:, : shot.shape[1] // 3]
+    return np.flatnonzero((np.abs(left - colour) <= 2).all(axis=-1).sum(axis=1) > 8)
+
+
+def test_the_bar_names_missing_values_from_the_first_frame_on(plotter: Any) -> None:
+    mesh: Any = pv.ImageData(dimensions=(24, 16, 1))
+    mesh["velocity"] = np.tile([1.0, 0.2, 0.0], (mesh.n_points, 1))
+    mesh["height"] = mesh.points[:, 0].astype(float)
+    x = np.asarray(mesh.points[:, 0], dtype=float)
+    mesh["part"] = np.where(x > 20, np.nan, x)
+    look: Any = {"nan_color": (255, 0, 255), "reset_camera": False, "samples": 1}
+    plotter.camera.position = (0.0, 0.0, -1.0)  # from where the surface is not seen
+    plotter.camera.focal_point = (0.0, 0.0, -2.0)
+    handle = plotter.flowtex.add(mesh, vectors="velocity", scalars="height", **look)
+    [bar] = plotter.scalar_bars.values()
+    assert not len(swatch_rows(plotter, (255, 0, 255))) and not bar.GetDrawNanAnnotation()
+    handle.scalars = "part"
+    [bar] = plotter.scalar_bars.values()
+    assert len(swatch_rows(plotter, (255, 0, 255))) > 5
+    assert bar.GetDrawAnnotations() and bar.GetNanAnnotation() == "no data"
+    mesh["part"] = mesh["height"]
+    plotter.render()
+    assert not len(swatch_rows(plotter, (255, 0, 255)))
+    mesh["part"][3] = np.nan
+    mesh.Modified()
+    plotter.render()
+    assert len(swatch_rows(plotter, (255, 0, 255))) > 5
+
+
+def test_the_bar_of_a_map_names_places_without_data() -> None:
+    for field, has_swatch in ((ocean("globe"), True), (winds("robinson"), False)):
+        made: Any = pv.Plotter(off_screen=True, window_size=[300, 240])
+        made.set_background((0.0, 0.0, 1.0))
+        made.flowtex.add(field, samples=1)
+        [bar] = made.scalar_bars.values()
+        made.render()
+        assert bar.GetDrawNanAnnotation() == has_swatch
+        if has_swatch:
+            assert bar.GetLookupTable().nan_color.float_rgb == pytest.approx(
+                (0.1, 0.1, 1.0), abs=0.01
+            )
+        made.close()

@@ -80,10 +80,18 @@ class Ends(NamedTuple):
     are_chosen: bool = False
 
 
+class Lacking(NamedTuple):
+    """How a bar shows that values or data are missing in some places."""
+
+    text: str
+    color: tuple[float, ...]  #: From 0 to 1, (3,).
+
+
 class FlowMapper(_BaseDataSetMapper, vtkPolyDataMapper):
     """``vtkPolyDataMapper``, whose attributes and events PyVista's mapper hides."""
 
     ends = Ends()
+    lacking: Lacking | None = None  #: What is missing where the actor, or its map, is drawn.
     #: Identities of the mappers to whose common range the colours were last fitted.
     fitted_with: tuple[int, ...] = ()
 

@@ -331,6 +331,8 @@ class FlowLayer:
         ends = np.reshape(self.mesh.GetBounds(), (3, 2))
         corners = np.stack([*np.meshgrid(*ends, indexing="ij"), np.ones((2, 2, 2))])
         seen = matrix @ self.place @ corners.reshape(4, 8)
+        if (seen[3] <= 0).all():  # all of it is behind the eye
+            return None
         low = np.zeros(2)
         high = size
         if (seen[3] > 0).all():
