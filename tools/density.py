@@ -44,13 +44,13 @@ LAYOUT = (
 )
 
 
-def lines_of_code(source: str) -> int:
-    """Return the number of lines that contain code."""
+def lines_of_code(source: str, nodes: list[ast.AST]) -> int:
+    """Return the number of lines that contain code, given the text of a module and its nodes."""
     code: set[int] = set()
     for token in tokenize.generate_tokens(io.StringIO(source).readline):
         if token.type not in LAYOUT:
             code.update(range(token.start[0], token.end[0] + 1))
-    for node in ast.walk(ast.parse(source)):
+    for node in nodes:
         if not (isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant)):
             continue
         if isinstance(node.value.value, str):
@@ -128,9 +128,11 @@ class Density:
         """Count a module; the functions of a private one are not public."""
         source = path.read_text(encoding="utf-8")
         tree = ast.parse(source)
-        self.code += lines_of_code(source)
-        for node in ast.walk(tree):
-            self.counts.update(counted_kinds(node))
+        nodes = list(ast.walk(tree))
+        self.code += lines_of_code(source, nodes)
+        for node in nodes:
+            for kind in counted_kinds(node):
+                self.counts[kind] += 1
         if private:
             return
         for function in public_functions(tree):
