@@ -126,19 +126,24 @@ function starts(rate: Rate, [xs, ys]: Ends, [columns, rows]: Pair, cell: Pair): 
   for (let j = 0; j < rows; j += 1) {
     for (let i = 0; i < columns; i += 1) {
       const scale: Pair = [0, 0];
-      const isChosen = [0, 1].every((k) => {
-        let [least, top, bottom] = [Infinity, -Infinity, Infinity];
-        for (let m = 0; m < 16; m += 1) {
-          const [column, row] = [i - 1 + (m % 4), j - 1 + (m >> 2)];
-          if (column < 0 || row < 0 || column > columns || row > rows) continue;
-          const value = nodes[k][row * (columns + 1) + column];
-          if (Number.isNaN(value)) continue;
-          [top, bottom] = [Math.max(top, value), Math.min(bottom, value)];
-          if ([5, 6, 9, 10].includes(m)) least = Math.min(least, Math.abs(value));
+      let isChosen = true;
+      for (let k = 0; k < 2 && isChosen; k += 1) {
+        let least = Infinity;
+        let top = -Infinity;
+        let bottom = Infinity;
+        for (let row = Math.max(j - 1, 0); row <= Math.min(j + 2, rows); row += 1) {
+          for (let column = Math.max(i - 1, 0); column <= Math.min(i + 2, columns); column += 1) {
+            const value = nodes[k][row * (columns + 1) + column];
+            if (Number.isNaN(value)) continue;
+            if (value > top) top = value;
+            if (value < bottom) bottom = value;
+            const isCorner = (row === j || row === j + 1) && (column === i || column === i + 1);
+            if (isCorner && Math.abs(value) < least) least = Math.abs(value);
+          }
         }
         scale[k] = Math.max(Math.abs(top), Math.abs(bottom));
-        return scale[k] < Infinity && least <= top - bottom;
-      });
+        isChosen = scale[k] < Infinity && least <= top - bottom;
+      }
       if (!isChosen || !(larger(scale) > 0)) continue;
       found.push({ at: [xs[0] + cell[0] * (i + 0.5), ys[0] + cell[1] * (j + 0.5)], scale: [scale[0] || 1, scale[1] || 1] });
     }
@@ -301,7 +306,8 @@ function stepped(rate: Rate, at: Pair, step: number): Pair {
   const two = rate(...along(at, one, step / 2));
   const three = rate(...along(at, two, step / 2));
   const four = rate(...along(at, three, step));
-  return along(at, [0, 1].map((k) => (one[k] + 2 * two[k] + 2 * three[k] + four[k]) / 6) as Pair, step);
+  const sum = (k: number) => (one[k] + 2 * two[k] + 2 * three[k] + four[k]) / 6;
+  return along(at, [sum(0), sum(1)], step);
 }
 
 /**
@@ -408,8 +414,10 @@ export function closedOrbits(rate: Rate, ends: Ends, points: FixedPoint[]): Clos
       const length = Math.min(step, FINER * place);
       const side = Math.sign(way * rate(x + place, y)[1]);
       const isBack = (path: Pair[]) => {
-        const [before, after] = path.slice(-2).map((at) => side * (at[1] - y));
-        return path.length > LEAST_TURN && before < 0 && after >= 0 && path[path.length - 1][0] > x;
+        if (path.length <= LEAST_TURN) return false;
+        const before = path[path.length - 2];
+        const after = path[path.length - 1];
+        return side * (before[1] - y) < 0 && side * (after[1] - y) >= 0 && after[0] > x;
       };
       const path = followed(rate, ends, points, [[x + place, y]], way * length, isBack);
       if (path.length < 2 || !isBack(path)) return null;
@@ -474,6 +482,13 @@ function unit(rate: Rate): Rate {
   };
 }
 
+/** The share of a step from one coordinate to another that lies before an end. */
+function shareInside(from: number, to: number, [low, high]: Pair): number {
+  if (to > high) return Math.max((high - from) / (to - from), 0);
+  if (to < low) return Math.max((low - from) / (to - from), 0);
+  return 1;
+}
+
 /** The line from the last of some points on, of so long steps, to a fixed point, a border, or where it is to end. */
 function followed(
   rate: Rate,
@@ -484,16 +499,14 @@ function followed(
   isEnd: (path: Pair[]) => boolean = () => false,
 ): Pair[] {
   const near = END * Math.abs(step);
+  const direction = unit(rate);
   let isAway = false;
   for (let n = 0; n < MOST_STEPS; n += 1) {
     const at = path[path.length - 1];
-    const next = stepped(unit(rate), at, step);
-    if (!next.every(Number.isFinite)) return path;
+    const next = stepped(direction, at, step);
+    if (!Number.isFinite(next[0]) || !Number.isFinite(next[1])) return path;
     // It ends where it leaves the box.
-    const share = Math.min(...ends.map(([low, high], k) => {
-      const beyond = next[k] > high ? high : next[k] < low ? low : NaN;
-      return Number.isNaN(beyond) ? 1 : Math.max((beyond - at[k]) / (next[k] - at[k]), 0);
-    }));
+    const share = Math.min(shareInside(at[0], next[0], ends[0]), shareInside(at[1], next[1], ends[1]));
     path.push(along(at, difference(next, at), share));
     if (share < 1 || isEnd(path)) return path;
     const end = points.find((point) => distance(point.at, next) < near);

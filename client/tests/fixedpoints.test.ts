@@ -35,7 +35,11 @@ test("the points of formulas are exact, as in Python", () => {
   for (const { name, x, y, parameters, points, orbits, trees, gradient } of cases) {
     const at = (some: Tree[]) => {
       const evaluates = some.map(compiled);
-      return (a: number, b: number) => evaluates.map((evaluate) => evaluate({ ...parameters, x: a, y: b }));
+      const values = { ...parameters, x: 0, y: 0 };
+      return (a: number, b: number) => {
+        Object.assign(values, { x: a, y: b });
+        return evaluates.map((evaluate) => evaluate(values));
+      };
     };
     const rate = at(trees) as Rate;
     const own = found(rate, at(gradient), [x, y]);

@@ -19,6 +19,9 @@ export function add(map: Map): Promise<FlowPoint | null> {
 }
 `;
 
+/** Libraries and MapLibre's declarations, which are parsed once. */
+const parsed = new Map<string, ts.SourceFile | undefined>();
+
 /** Faults that the compiler finds in a module that uses the package. */
 function faults(text: string): string[] {
   const files = new Map([[`${FOLDER}flow.d.ts`, declarations()], [`${FOLDER}use.ts`, text]]);
@@ -30,7 +33,9 @@ function faults(text: string): string[] {
   host.readFile = (name) => files.get(name) ?? readFile(name);
   host.getSourceFile = (name, version) => {
     const own = files.get(name);
-    return own === undefined ? getSourceFile(name, version) : ts.createSourceFile(name, own, version);
+    if (own !== undefined) return ts.createSourceFile(name, own, version);
+    if (!parsed.has(name)) parsed.set(name, getSourceFile(name, version));
+    return parsed.get(name);
   };
   const program = ts.createProgram([...files.keys()], resolved, host);
   return ts.getPreEmitDiagnostics(program).map((fault) => ts.flattenDiagnosticMessageText(fault.messageText, " "));

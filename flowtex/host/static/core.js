@@ -458,58 +458,58 @@ zero.at[0])/cell[0],(other.at[1]-zero.at[1])/cell[1]);return search.point(zero,M
 zero).map(free)))}).sort((one,two)=>two.steepness-one.steepness)}function starts(rate,[xs,ys],[columns,rows],cell){let nodes=[
 0,1].map(()=>new Float64Array((columns+1)*(rows+1)));for(let n=0;n<nodes[0].length;n+=1)rate(xs[0]+cell[0]*(n%(columns+1)),
 ys[0]+cell[1]*Math.floor(n/(columns+1))).forEach((value,k)=>nodes[k][n]=Number.isFinite(value)?value:NaN);let found=[];for(let j=0;j<
-rows;j+=1)for(let i=0;i<columns;i+=1){let scale3=[0,0];![0,1].every(k=>{let[least,top,bottom]=[1/0,-1/0,1/0];for(let m=0;m<
-16;m+=1){let[column,row2]=[i-1+m%4,j-1+(m>>2)];if(column<0||row2<0||column>columns||row2>rows)continue;let value=nodes[k][row2*
-(columns+1)+column];Number.isNaN(value)||([top,bottom]=[Math.max(top,value),Math.min(bottom,value)],[5,6,9,10].includes(
-m)&&(least=Math.min(least,Math.abs(value))))}return scale3[k]=Math.max(Math.abs(top),Math.abs(bottom)),scale3[k]<1/0&&least<=
-top-bottom})||!(larger(scale3)>0)||found.push({at:[xs[0]+cell[0]*(i+.5),ys[0]+cell[1]*(j+.5)],scale:[scale3[0]||1,scale3[1]||
-1]})}return found}var Search=class{rate;gradient;cell;constructor(rate,gradient,cell){[this.rate,this.gradient,this.cell]=
-[rate,gradient,cell]}sides(cells,at){let{cell}=this;return[[1,0],[1,1],[0,1],[-1,1],[-1,0],[-1,-1],[0,-1],[1,-1]].map(([
-x,y])=>[at[0]+cells*cell[0]*x,at[1]+cells*cell[1]*y])}matrix(at,scale3){return this.gradient(...at).map((value,n)=>value*
-this.cell[n%2]/scale3[n>>1])}step(at,scale3){let[u,v2]=this.rate(...at).map((value,k)=>value/scale3[k]),[a,b,c,d]=this.matrix(
-at,scale3),[size,determinant2]=[a*a+b*b+c*c+d*d,a*d-b*c],share=Math.abs(determinant2)/size,step=share>.1*SINGULAR?[(b*v2-
-d*u)/determinant2,(c*u-a*v2)/determinant2]:[-(a*u+c*v2)/size,-(b*u+d*v2)/size];return{left:larger([u,v2]),step,share}}zero(start,scale3){
-let{cell}=this,[at,best,least]=[start,start,1/0];for(let n=0;n<NEWTON_STEPS;n+=1){let{left:left2,step:step2}=this.step(at,
-scale3);left2<least&&([best,least]=[at,left2]);let length3=larger(step2),share2=1/Math.max(length3,1);if(at=[at[0]+cell[0]*
-step2[0]*share2,at[1]+cell[1]*step2[1]*share2],!at.every((x,k)=>Math.abs(x-start[k])<=FAR*cell[k])||!(length3>SINGULAR))
-break}let{left,step,share}=this.step(best,scale3);return left<=REMAINS||larger(step)<LAST_STEP&&share>SINGULAR?{at:best,
-scale:scale3,left}:null}isDegenerate(at,scale3){let[here,...near]=[at,...this.sides(CHANGE,at)].map(place=>{let[a,b,c,d]=this.
-matrix(place,scale3);return{determinant:a*d-b*c,size:a*a+b*b+c*c+d*d}}),changes=near.map(({determinant:determinant3})=>Math.
-abs(determinant3-here.determinant)).filter(Number.isFinite),determinant2=Math.abs(here.determinant);return!(determinant2>
-SINGULAR*here.size&&determinant2*CHANGE>=DEGENERATE*Math.max(0,...changes))}point({at,isDegenerate},free){let[a,b,c,d]=this.
-gradient(...at),[trace,determinant2]=[a+d,a*d-b*c],[square,size]=[trace**2/4-determinant2,Math.max(...[a,b,c,d].map(Math.
-abs))],root=Math.sqrt(Math.abs(square)),eigenvalues=square>0?[[trace/2+root,0],[trace/2-root,0]]:[[trace/2,root],[trace/
-2,-root]],result2={at,eigenvalues,steepness:Math.abs(determinant2),ways:[],kind:"degenerate",index:Math.sign(determinant2)};
-if(isDegenerate)return{...result2,index:this.turns(at,Math.min(RADIUS,.3*free)),ways:this.directions(at)};if(determinant2<
-0){let way=value=>{let[one,two]=[[b,value-a],[value-d,c]],[x,y]=Math.hypot(...one)>Math.hypot(...two)?one:two;return[x/Math.
-hypot(x,y),y/Math.hypot(x,y)]},ways=[root,-root].flatMap(part=>{let[x,y]=way(trace/2+part);return[[x,y],[-x,-y]].map(each=>({
-way:each,leaves:part>0}))});return{...result2,kind:"saddle",ways}}if(!(square<0&&root>REAL_SHARE*Math.sqrt(determinant2)))
-return{...result2,kind:trace>0?"source":"sink"};let growth=Math.abs(trace)<=ROUNDING*size?this.growth(at,[a,b,c,d],Math.
-min(TURN_RADIUS,.2*free)):trace;return{...result2,kind:growth>0?"spiral source":growth<0?"spiral sink":"centre"}}turns(at,radius){
-let angles=circle().map(angle=>{let[u,v2]=this.rate(at[0]+radius*this.cell[0]*Math.cos(angle),at[1]+radius*this.cell[1]*
-Math.sin(angle));return Math.atan2(v2,u)}),turned2=angles.slice(1).reduce((sum,angle,n)=>sum+folded(angle-angles[n]),0);
-return Math.round(turned2/(2*Math.PI))||0}directions(at){let radius=RADIUS*Math.max(...this.cell),wayOf=angle=>[Math.cos(
-angle),Math.sin(angle)],radial=angle=>{let way=wayOf(angle),[u,v2]=this.rate(...along(at,way,radius));return{across:way[0]*
-v2-way[1]*u,out:way[0]*u+way[1]*v2}},angles=circle(),across=angles.map(angle=>radial(angle).across),found=angles.flatMap(
-(low,n)=>{if(!(across[n]*across[n+1]<0))return[];let high=angles[n+1];for(let k=0;k<50;k+=1){let middle=.5*(low+high);radial(
-middle).across*across[n]>0?low=middle:high=middle}return[{way:wayOf(low),leaves:radial(low).out>0}]});return found.length>
-MOST_DIRECTIONS?[]:found.filter(({leaves},n)=>[-1,1].some(m=>found.at((n+m)%found.length)?.leaves!==leaves))}growth(at,[
-a,b,c],cells){let turn=Math.sqrt(-a*a-b*c),radius=cells/Math.max(1/this.cell[0],(turn+Math.abs(a))/Math.abs(b)/this.cell[1]),
-rate=(x,y)=>{let[u,v2]=this.rate(at[0]+x,at[1]+(turn*y-a*x)/b);return[u,(a*u+b*v2)/turn]},w=[radius,0];for(let n=0;n<TURN_STEPS+
-4;n+=1)w=stepped(rate,w,n<TURN_STEPS?2*Math.PI/TURN_STEPS/turn:w[1]/(turn*w[0]));let growth=w[0]/radius-1;return Math.abs(
-growth)>RETURNED?growth:0}},folded=angle=>angle-2*Math.PI*Math.round(angle/(2*Math.PI));function circle(){return Array.from(
-{length:CIRCLE+1},(_,n)=>.3+2*Math.PI*n/CIRCLE)}function stepped(rate,at,step){let one=rate(...at),two=rate(...along(at,
-one,step/2)),three=rate(...along(at,two,step/2)),four=rate(...along(at,three,step));return along(at,[0,1].map(k=>(one[k]+
-2*two[k]+2*three[k]+four[k])/6),step)}function nullclines(rate,ends2,window2=null){let coarse=piecesIn(rate,ends2);if(!window2)
-return coarse;let isOutside=([one,two])=>window2.some(([low,high],k)=>Math.abs(one[k]+two[k]-low-high)>high-low),fine=piecesIn(
-rate,window2);return coarse.map((pieces,k)=>[...pieces.filter(isOutside),...fine[k]])}function piecesIn(rate,[xs,ys]){let sides=[
-xs[1]-xs[0],ys[1]-ys[0]],[columns,rows]=sides.map(side=>Math.max(Math.round(NULLCLINE_CELLS*side/Math.max(...sides)),8)),
-nodes=Array.from({length:(rows+1)*(columns+1)},(_,n)=>{let at=[xs[0]+sides[0]*(n%(columns+1))/columns,ys[0]+sides[1]*Math.
-floor(n/(columns+1))/rows];return{at,value:rate(...at)}});return[0,1].map(k=>{let pieces=[];for(let n=0;n<rows*columns;n+=
-1){let low=n+Math.floor(n/columns),[a,b,c,d]=[low,low+1,low+columns+1,low+columns+2].map(node=>nodes[node]);for(let corners of[
-[a,b,d],[a,d,c]]){let isSide=corners.filter(({value})=>value[k]!==0).length===1,above=corners.map(({value})=>isSide?value[k]!==
-0:value[k]>0),alone=above.findIndex((one2,m)=>one2!==above[(m+1)%3]&&one2!==above[(m+2)%3]);if(alone<0||!corners.every(({
-value})=>Number.isFinite(value[k])))continue;let one=corners[alone],[start,end]=[1,2].map(m=>crossing(at=>rate(...at)[k],
+rows;j+=1)for(let i=0;i<columns;i+=1){let scale3=[0,0],isChosen=!0;for(let k=0;k<2&&isChosen;k+=1){let least=1/0,top=-1/0,
+bottom=1/0;for(let row2=Math.max(j-1,0);row2<=Math.min(j+2,rows);row2+=1)for(let column=Math.max(i-1,0);column<=Math.min(
+i+2,columns);column+=1){let value=nodes[k][row2*(columns+1)+column];if(Number.isNaN(value))continue;value>top&&(top=value),
+value<bottom&&(bottom=value),(row2===j||row2===j+1)&&(column===i||column===i+1)&&Math.abs(value)<least&&(least=Math.abs(
+value))}scale3[k]=Math.max(Math.abs(top),Math.abs(bottom)),isChosen=scale3[k]<1/0&&least<=top-bottom}!isChosen||!(larger(
+scale3)>0)||found.push({at:[xs[0]+cell[0]*(i+.5),ys[0]+cell[1]*(j+.5)],scale:[scale3[0]||1,scale3[1]||1]})}return found}
+var Search=class{rate;gradient;cell;constructor(rate,gradient,cell){[this.rate,this.gradient,this.cell]=[rate,gradient,cell]}sides(cells,at){
+let{cell}=this;return[[1,0],[1,1],[0,1],[-1,1],[-1,0],[-1,-1],[0,-1],[1,-1]].map(([x,y])=>[at[0]+cells*cell[0]*x,at[1]+cells*
+cell[1]*y])}matrix(at,scale3){return this.gradient(...at).map((value,n)=>value*this.cell[n%2]/scale3[n>>1])}step(at,scale3){
+let[u,v2]=this.rate(...at).map((value,k)=>value/scale3[k]),[a,b,c,d]=this.matrix(at,scale3),[size,determinant2]=[a*a+b*b+
+c*c+d*d,a*d-b*c],share=Math.abs(determinant2)/size,step=share>.1*SINGULAR?[(b*v2-d*u)/determinant2,(c*u-a*v2)/determinant2]:
+[-(a*u+c*v2)/size,-(b*u+d*v2)/size];return{left:larger([u,v2]),step,share}}zero(start,scale3){let{cell}=this,[at,best,least]=[
+start,start,1/0];for(let n=0;n<NEWTON_STEPS;n+=1){let{left:left2,step:step2}=this.step(at,scale3);left2<least&&([best,least]=
+[at,left2]);let length3=larger(step2),share2=1/Math.max(length3,1);if(at=[at[0]+cell[0]*step2[0]*share2,at[1]+cell[1]*step2[1]*
+share2],!at.every((x,k)=>Math.abs(x-start[k])<=FAR*cell[k])||!(length3>SINGULAR))break}let{left,step,share}=this.step(best,
+scale3);return left<=REMAINS||larger(step)<LAST_STEP&&share>SINGULAR?{at:best,scale:scale3,left}:null}isDegenerate(at,scale3){
+let[here,...near]=[at,...this.sides(CHANGE,at)].map(place=>{let[a,b,c,d]=this.matrix(place,scale3);return{determinant:a*
+d-b*c,size:a*a+b*b+c*c+d*d}}),changes=near.map(({determinant:determinant3})=>Math.abs(determinant3-here.determinant)).filter(
+Number.isFinite),determinant2=Math.abs(here.determinant);return!(determinant2>SINGULAR*here.size&&determinant2*CHANGE>=DEGENERATE*
+Math.max(0,...changes))}point({at,isDegenerate},free){let[a,b,c,d]=this.gradient(...at),[trace,determinant2]=[a+d,a*d-b*
+c],[square,size]=[trace**2/4-determinant2,Math.max(...[a,b,c,d].map(Math.abs))],root=Math.sqrt(Math.abs(square)),eigenvalues=square>
+0?[[trace/2+root,0],[trace/2-root,0]]:[[trace/2,root],[trace/2,-root]],result2={at,eigenvalues,steepness:Math.abs(determinant2),
+ways:[],kind:"degenerate",index:Math.sign(determinant2)};if(isDegenerate)return{...result2,index:this.turns(at,Math.min(
+RADIUS,.3*free)),ways:this.directions(at)};if(determinant2<0){let way=value=>{let[one,two]=[[b,value-a],[value-d,c]],[x,
+y]=Math.hypot(...one)>Math.hypot(...two)?one:two;return[x/Math.hypot(x,y),y/Math.hypot(x,y)]},ways=[root,-root].flatMap(
+part=>{let[x,y]=way(trace/2+part);return[[x,y],[-x,-y]].map(each=>({way:each,leaves:part>0}))});return{...result2,kind:"\
+saddle",ways}}if(!(square<0&&root>REAL_SHARE*Math.sqrt(determinant2)))return{...result2,kind:trace>0?"source":"sink"};let growth=Math.
+abs(trace)<=ROUNDING*size?this.growth(at,[a,b,c,d],Math.min(TURN_RADIUS,.2*free)):trace;return{...result2,kind:growth>0?
+"spiral source":growth<0?"spiral sink":"centre"}}turns(at,radius){let angles=circle().map(angle=>{let[u,v2]=this.rate(at[0]+
+radius*this.cell[0]*Math.cos(angle),at[1]+radius*this.cell[1]*Math.sin(angle));return Math.atan2(v2,u)}),turned2=angles.
+slice(1).reduce((sum,angle,n)=>sum+folded(angle-angles[n]),0);return Math.round(turned2/(2*Math.PI))||0}directions(at){let radius=RADIUS*
+Math.max(...this.cell),wayOf=angle=>[Math.cos(angle),Math.sin(angle)],radial=angle=>{let way=wayOf(angle),[u,v2]=this.rate(
+...along(at,way,radius));return{across:way[0]*v2-way[1]*u,out:way[0]*u+way[1]*v2}},angles=circle(),across=angles.map(angle=>radial(
+angle).across),found=angles.flatMap((low,n)=>{if(!(across[n]*across[n+1]<0))return[];let high=angles[n+1];for(let k=0;k<
+50;k+=1){let middle=.5*(low+high);radial(middle).across*across[n]>0?low=middle:high=middle}return[{way:wayOf(low),leaves:radial(
+low).out>0}]});return found.length>MOST_DIRECTIONS?[]:found.filter(({leaves},n)=>[-1,1].some(m=>found.at((n+m)%found.length)?.
+leaves!==leaves))}growth(at,[a,b,c],cells){let turn=Math.sqrt(-a*a-b*c),radius=cells/Math.max(1/this.cell[0],(turn+Math.
+abs(a))/Math.abs(b)/this.cell[1]),rate=(x,y)=>{let[u,v2]=this.rate(at[0]+x,at[1]+(turn*y-a*x)/b);return[u,(a*u+b*v2)/turn]},
+w=[radius,0];for(let n=0;n<TURN_STEPS+4;n+=1)w=stepped(rate,w,n<TURN_STEPS?2*Math.PI/TURN_STEPS/turn:w[1]/(turn*w[0]));let growth=w[0]/
+radius-1;return Math.abs(growth)>RETURNED?growth:0}},folded=angle=>angle-2*Math.PI*Math.round(angle/(2*Math.PI));function circle(){
+return Array.from({length:CIRCLE+1},(_,n)=>.3+2*Math.PI*n/CIRCLE)}function stepped(rate,at,step){let one=rate(...at),two=rate(
+...along(at,one,step/2)),three=rate(...along(at,two,step/2)),four=rate(...along(at,three,step)),sum=k=>(one[k]+2*two[k]+
+2*three[k]+four[k])/6;return along(at,[sum(0),sum(1)],step)}function nullclines(rate,ends2,window2=null){let coarse=piecesIn(
+rate,ends2);if(!window2)return coarse;let isOutside=([one,two])=>window2.some(([low,high],k)=>Math.abs(one[k]+two[k]-low-
+high)>high-low),fine=piecesIn(rate,window2);return coarse.map((pieces,k)=>[...pieces.filter(isOutside),...fine[k]])}function piecesIn(rate,[
+xs,ys]){let sides=[xs[1]-xs[0],ys[1]-ys[0]],[columns,rows]=sides.map(side=>Math.max(Math.round(NULLCLINE_CELLS*side/Math.
+max(...sides)),8)),nodes=Array.from({length:(rows+1)*(columns+1)},(_,n)=>{let at=[xs[0]+sides[0]*(n%(columns+1))/columns,
+ys[0]+sides[1]*Math.floor(n/(columns+1))/rows];return{at,value:rate(...at)}});return[0,1].map(k=>{let pieces=[];for(let n=0;n<
+rows*columns;n+=1){let low=n+Math.floor(n/columns),[a,b,c,d]=[low,low+1,low+columns+1,low+columns+2].map(node=>nodes[node]);
+for(let corners of[[a,b,d],[a,d,c]]){let isSide=corners.filter(({value})=>value[k]!==0).length===1,above=corners.map(({value})=>isSide?
+value[k]!==0:value[k]>0),alone=above.findIndex((one2,m)=>one2!==above[(m+1)%3]&&one2!==above[(m+2)%3]);if(alone<0||!corners.
+every(({value})=>Number.isFinite(value[k])))continue;let one=corners[alone],[start,end]=[1,2].map(m=>crossing(at=>rate(...at)[k],
 one.at,corners[(alone+m)%3].at));start&&end&&pieces.push([start,end])}}return pieces})}function crossing(rate,one,two){let size=()=>Math.
 max(Math.abs(rate(one)),Math.abs(rate(two))),[first,isAbove]=[size(),rate(one)>0];for(let n=0;n<NULLCLINE_HALVINGS;n+=1){
 let middle=along(one,difference(two,one),.5);rate(middle)>0===isAbove?one=middle:two=middle}let share=rate(one)/(rate(one)-
@@ -522,32 +522,33 @@ rate,gradient,turn)?turn:null}}))}function isIsolated(rate,gradient,turn){let gr
 a,,,d]=gradient(...turn[n]);growth+=(a+d)*distance(turn[n],turn[n-1])/Math.hypot(...rate(...turn[n]))}return Math.abs(growth)>
 GROWTH}function closedOrbits(rate,ends2,points){let diagonal=Math.hypot(...ends2.map(([low,high])=>high-low)),step=diagonal/
 STEPS,found=[];for(let{at:[x,y]}of points.filter(({index})=>index>0).slice(0,MOST_AROUND)){let turn=(place,way)=>{let length3=Math.
-min(step,FINER*place),side=Math.sign(way*rate(x+place,y)[1]),isBack=path2=>{let[before2,after2]=path2.slice(-2).map(at=>side*
-(at[1]-y));return path2.length>LEAST_TURN&&before2<0&&after2>=0&&path2[path2.length-1][0]>x},path=followed(rate,ends2,points,
-[[x+place,y]],way*length3,isBack);if(path.length<2||!isBack(path))return null;let[before,after]=path.slice(-2),rest=way*
-length3*(y-before[1])/(after[1]-before[1]);for(let n=0;n<3;n+=1){let at=stepped(unit2(rate),before,rest);rest+=(y-at[1])/
-unit2(rate)(...at)[1]}return[...path.slice(0,-1),stepped(unit2(rate),before,rest)]},moved=(place,way)=>(turn(place,way)?.
-at(-1)?.[0]??NaN)-x-place,last=null;for(let place=2*step;x+place<ends2[0][1];place+=Math.min((RATIO-1)*place,APART*diagonal)){
-let forward=moved(place,1),out=Number.isNaN(forward)?-moved(place,-1):forward;if(!(Math.abs(out)<=MOVED*place)){if(last&&
-last.out*out<0){let way=Math.sign(last.out),[low,high]=[last.place,place];for(let n=0;n<HALVINGS;n+=1){let middle=(low+high)/
-2;moved(middle,way)>0?low=middle:high=middle}let path=turn(low,way),isNew=path&&windsAround(path,[x,y])&&!found.some(other=>other.
-path.some(at=>distance(at,path[0])<2*step));path&&isNew&&distance(path[0],path[path.length-1])<CLOSED*step&&found.push({
-path,isStable:way>0})}last=Number.isNaN(out)?null:{place,out}}}}return found}function trajectory(rate,ends2,points,at){let step=Math.
-hypot(...ends2.map(([low,high])=>high-low))/STEPS,ahead=followed(rate,ends2,points,[at],step),closed=turnOf(ahead,step,CLOSED);
-return closed?ahead.slice(0,closed[1]+1):[...followed(rate,ends2,points,[at],-step).reverse(),...ahead.slice(1)]}function windsAround(path,[
-x,y]){let turned2=0;for(let n=1;n<path.length;n+=1){let[[a,b],[c,d]]=[path[n-1],path[n]].map(at=>difference(at,[x,y]));turned2+=
-Math.atan2(a*d-b*c,a*c+b*d)}return Math.abs(turned2)>Math.PI}function unit2(rate){return(x,y)=>{let[u,v2]=rate(x,y),size=Math.
-hypot(u,v2);return[u/size,v2/size]}}function followed(rate,ends2,points,path,step,isEnd=()=>!1){let near=END*Math.abs(step),
-isAway=!1;for(let n=0;n<MOST_STEPS2;n+=1){let at=path[path.length-1],next=stepped(unit2(rate),at,step);if(!next.every(Number.
-isFinite))return path;let share=Math.min(...ends2.map(([low,high],k)=>{let beyond=next[k]>high?high:next[k]<low?low:NaN;
-return Number.isNaN(beyond)?1:Math.max((beyond-at[k])/(next[k]-at[k]),0)}));if(path.push(along(at,difference(next,at),share)),
-share<1||isEnd(path))return path;let end=points.find(point=>distance(point.at,next)<near);if(end&&isAway)return[...path,
-end.at];isAway||=!points.some(point=>distance(point.at,next)<2*near)}return path}function turnOf(path,step,apart){let around2=Math.
-max(.75,1.25*apart)*step,places=new Map,cellOf2=at=>at.map(x=>Math.floor(x/around2));for(let n=0;n<path.length;n+=1){let[
-i,j]=cellOf2(path[n]);for(let m=0;m<9;m+=1)for(let before of places.get(`${i+m%3-1} ${j+Math.floor(m/3)-1}`)??[]){if(n-before<=
-LEAST_TURN||distance(path[n],path[before])>around2||before+1>=path.length)continue;let way=difference(path[before+1],path[Math.
-max(before-1,0)]),gap=difference(path[n],path[before]);if(Math.abs(gap[0]*way[1]-gap[1]*way[0])/Math.max(Math.hypot(...way),
-1e-300)<apart*step)return[before,n]}let name=`${i} ${j}`;places.set(name,[...places.get(name)??[],n])}return null}function percentileOf(sorted,percent){let place=percent/100*(sorted.length-1),before=Math.floor(place),after=Math.min(before+
+min(step,FINER*place),side=Math.sign(way*rate(x+place,y)[1]),isBack=path2=>{if(path2.length<=LEAST_TURN)return!1;let before2=path2[path2.
+length-2],after2=path2[path2.length-1];return side*(before2[1]-y)<0&&side*(after2[1]-y)>=0&&after2[0]>x},path=followed(rate,
+ends2,points,[[x+place,y]],way*length3,isBack);if(path.length<2||!isBack(path))return null;let[before,after]=path.slice(
+-2),rest=way*length3*(y-before[1])/(after[1]-before[1]);for(let n=0;n<3;n+=1){let at=stepped(unit2(rate),before,rest);rest+=
+(y-at[1])/unit2(rate)(...at)[1]}return[...path.slice(0,-1),stepped(unit2(rate),before,rest)]},moved=(place,way)=>(turn(place,
+way)?.at(-1)?.[0]??NaN)-x-place,last=null;for(let place=2*step;x+place<ends2[0][1];place+=Math.min((RATIO-1)*place,APART*
+diagonal)){let forward=moved(place,1),out=Number.isNaN(forward)?-moved(place,-1):forward;if(!(Math.abs(out)<=MOVED*place)){
+if(last&&last.out*out<0){let way=Math.sign(last.out),[low,high]=[last.place,place];for(let n=0;n<HALVINGS;n+=1){let middle=(low+
+high)/2;moved(middle,way)>0?low=middle:high=middle}let path=turn(low,way),isNew=path&&windsAround(path,[x,y])&&!found.some(
+other=>other.path.some(at=>distance(at,path[0])<2*step));path&&isNew&&distance(path[0],path[path.length-1])<CLOSED*step&&
+found.push({path,isStable:way>0})}last=Number.isNaN(out)?null:{place,out}}}}return found}function trajectory(rate,ends2,points,at){
+let step=Math.hypot(...ends2.map(([low,high])=>high-low))/STEPS,ahead=followed(rate,ends2,points,[at],step),closed=turnOf(
+ahead,step,CLOSED);return closed?ahead.slice(0,closed[1]+1):[...followed(rate,ends2,points,[at],-step).reverse(),...ahead.
+slice(1)]}function windsAround(path,[x,y]){let turned2=0;for(let n=1;n<path.length;n+=1){let[[a,b],[c,d]]=[path[n-1],path[n]].
+map(at=>difference(at,[x,y]));turned2+=Math.atan2(a*d-b*c,a*c+b*d)}return Math.abs(turned2)>Math.PI}function unit2(rate){
+return(x,y)=>{let[u,v2]=rate(x,y),size=Math.hypot(u,v2);return[u/size,v2/size]}}function shareInside(from,to,[low,high]){
+return to>high?Math.max((high-from)/(to-from),0):to<low?Math.max((low-from)/(to-from),0):1}function followed(rate,ends2,points,path,step,isEnd=()=>!1){
+let near=END*Math.abs(step),direction=unit2(rate),isAway=!1;for(let n=0;n<MOST_STEPS2;n+=1){let at=path[path.length-1],next=stepped(
+direction,at,step);if(!Number.isFinite(next[0])||!Number.isFinite(next[1]))return path;let share=Math.min(shareInside(at[0],
+next[0],ends2[0]),shareInside(at[1],next[1],ends2[1]));if(path.push(along(at,difference(next,at),share)),share<1||isEnd(
+path))return path;let end=points.find(point=>distance(point.at,next)<near);if(end&&isAway)return[...path,end.at];isAway||=
+!points.some(point=>distance(point.at,next)<2*near)}return path}function turnOf(path,step,apart){let around2=Math.max(.75,
+1.25*apart)*step,places=new Map,cellOf2=at=>at.map(x=>Math.floor(x/around2));for(let n=0;n<path.length;n+=1){let[i,j]=cellOf2(
+path[n]);for(let m=0;m<9;m+=1)for(let before of places.get(`${i+m%3-1} ${j+Math.floor(m/3)-1}`)??[]){if(n-before<=LEAST_TURN||
+distance(path[n],path[before])>around2||before+1>=path.length)continue;let way=difference(path[before+1],path[Math.max(before-
+1,0)]),gap=difference(path[n],path[before]);if(Math.abs(gap[0]*way[1]-gap[1]*way[0])/Math.max(Math.hypot(...way),1e-300)<
+apart*step)return[before,n]}let name=`${i} ${j}`;places.set(name,[...places.get(name)??[],n])}return null}function percentileOf(sorted,percent){let place=percent/100*(sorted.length-1),before=Math.floor(place),after=Math.min(before+
 1,sorted.length-1);return sorted[before]+(place-before)*(sorted[after]-sorted[before])}function widened2([low,high],{same,
 widening}){let size=Math.max(Math.abs(low),Math.abs(high));return high-low>same*size?[low,high]:size>0?[low-widening*size,
 high+widening*size]:[0,1]}function rangeOf(values,rules){let sorted=values.filter(Number.isFinite).sort();if(!sorted.length)
