@@ -19,10 +19,10 @@ class EvenPass:
 
     def __init__(self) -> None:
         #: Texture of each pixel before it fades, and the factor by which it does.
-        self._texture = Target(2)
+        self._texture = Target(2, is_half=True)
         self._layers: list[tuple[Box, float]] = []
-        self._means = Target(1)
-        self._rows = Target(1)
+        self._means = Target(1, is_half=True)
+        self._rows = Target(1, is_half=True)
         self._blur = Rectangle("even", frozenset())
         self._shade = Rectangle("shade", frozenset())
 
