@@ -219,13 +219,13 @@ function sideSteps(
 
 /** Variance of a sum over that of independent samples, for some a number of grains apart. */
 function shared(apart: number, near: number, c: Constants): number {
-  let total = 1;
-  for (let m = 1; m <= c.SHARED_TERMS[0]; m += 1) {
-    const d = m * m * apart * apart;
-    if (d > c.BELL_END[0]) break;
-    total += 2 * near ** (m * m) * Math.exp(-d * (c.BELL[0] + c.BELL_BEND[0] * d));
-  }
-  return total;
+  const square = apart ** 2;
+  const decay = c.BELL[0] * square - Math.log(Math.max(near, c.LEAST_SQUARE[0]));
+  const bend = c.BELL_BEND[0] * square ** 2;
+  const bent = bend / decay ** 2;
+  const many = Math.sqrt(Math.PI / (decay * (1 + bent * (c.BENT[0] - c.BENT_TWICE[0] * bent))));
+  const few = 1 + 2 * Math.exp(-decay - bend);
+  return Math.max(many, few);
 }
 
 const total = (values: number[]) => values.reduce((sum, value) => sum + value, 0);

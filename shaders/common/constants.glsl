@@ -14,14 +14,15 @@ const float FLOWTEX_LEAST_SPEED = 1e-6;  // a particle that is slower stands sti
 // Correlation of the noise at two points d grains apart: exp(-d^2 (BELL + BELL_BEND d^2)).
 const float FLOWTEX_BELL = 1.19;
 const float FLOWTEX_BELL_BEND = 0.06;
-const float FLOWTEX_BELL_END = 3.0; // d^2 beyond which it counts as zero
+// The integral over such a bell is less, as if BELL grew by these times BELL_BEND / BELL^2 and its square.
+const float FLOWTEX_BENT = 1.5;
+const float FLOWTEX_BENT_TWICE = 4.9;   // of the square, which takes from it
 const int FLOWTEX_UNCERTAIN_LAYER = 3; // whose fourth channel is the uncertainty of the direction
 const float FLOWTEX_FADED = 0.3;         // contrast where it is not known at all
 // The local mean that is subtracted from the texture.
 const float FLOWTEX_EVEN_SIGMA = 2.0;    // deviation of the bell that it is over, in grains
 const float FLOWTEX_LEAST_NEAR = 1e-6;   // correlations of neighbouring weights that count
 const float FLOWTEX_MOST_NEAR = 0.999999;
-const int FLOWTEX_SHARED_TERMS = 24; // neighbours of a sample that may share its grain
 
 // Paths in a cell give way to the slices from one number to the other: of the length of the nodes'
 // mean velocity over the mean of their lengths, and of the cells that a side of the path goes over.

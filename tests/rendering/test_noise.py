@@ -119,6 +119,15 @@ def test_the_variance_of_a_sum_is_known(
     assert np.var(total) == pytest.approx(known, rel=0.08)
 
 
+def test_the_variance_of_a_sum_is_that_of_its_series() -> None:
+    # Bells of the noise and of the weights, over all samples beside one.
+    apart, near = np.meshgrid([0.1, 0.35, 0.7, 1.0, 1.3, 4.0], [1e-9, 0.5, 0.9, 0.99, 0.9999])
+    squares = np.arange(1, 60)[:, None, None] ** 2
+    away = squares * apart**2
+    terms = near**squares * np.exp(-away * (const.BELL + const.BELL_BEND * away))
+    assert shared(apart, near) == pytest.approx(1 + 2 * terms.sum(axis=0), rel=3e-3)
+
+
 def test_the_mixture_of_neighbouring_octaves_has_the_grain_of_either(
     rng: np.random.Generator,
 ) -> None:

@@ -1743,30 +1743,30 @@ c.LEAST_SPEED[0]);return spacing/by/Math.max(length2(along2),least)},[lag,step]=
 count2+1;k+=1){lag+=step;let alive=clamp((end-lag)/step+1,0,1)*Math.min(count2-k+1,1);if(!alive)break;for(;lag>lags[m]&&
 m<lags.length-1;m+=1)[before,from]=[after,lags[m]],after=slope(first+m+2);let bend=bendAt(),at=lateness=>before.map((x,n)=>x+
 bend[n]*lateness),weight=alive*kernelAt(sign,k/(count2+1),parting,u,c);result2.push({displacement:scale2(at(lag-from),lag*
-sign*by),lag:-sign*lag,weight}),step=stepAt(at(2*lag-from),bend)}return result2}function shared(apart,near,c){let total2=1;
-for(let m=1;m<=c.SHARED_TERMS[0];m+=1){let d=m*m*apart*apart;if(d>c.BELL_END[0])break;total2+=2*near**(m*m)*Math.exp(-d*
-(c.BELL[0]+c.BELL_BEND[0]*d))}return total2}var total=values=>values.reduce((sum,value)=>sum+value,0);function greyOf(value,contrast,c){
-return 1/(1+Math.exp(-c.TONE_SLOPE[0]*contrast*value))}function pixelSum({at,settings,camera,rows}){let{header}=at.scene,
-{geometry,slices,shaders}=header;if(header.image||isMoving(header,settings,!0))return null;let c=constantsOf(shaders.fragment),
-focus=camera.state.focal_point,view={...{eye:camera.eye,between:at.moment[2],time:slices.times[0],clock:0,still:!0},focus,
-anchor:[0,0,0],density:1,pixel:1},u=uniforms(header,settings,view),grain=grainAt(at,settings,camera,rows),spacing=Number(
-u.u_spacing)*grain,layers=layersAt(at),moves=length2(layers(0).slice(0,3))>c.LEAST_SPEED[0],sides=moves?[...Array(Number(
-u.u_sides)).keys()]:[],areSparse=isSparse(header,settings),set=Number(u.u_samples),whole=(u.u_sides===2?Math.floor(set/2):
-set-1)*stretchAt(at,settings,camera),sine=areSparse&&!isSignFree(header)?partingAt(at,.5*whole*spacing):0,cosine=Math.sqrt(
-Math.max(1-sine**2,0)),parting=clamp(2*sine,0,1),together=c.TOGETHER[0]*cosine/Math.max(Math.abs(sine),c.LEAST_SPEED[0]),
-count2=whole*Math.min(together,1),[back=[],ahead=[]]=sides.map(side=>sideSteps(layers,side,spacing,count2,parting,u,c)),
-own=Math.max(kernelAt(1,0,parting,u,c),c.LEAST_WEIGHT[0]),steps=[...back.reverse(),{displacement:[0,0,0],lag:0,weight:own},
-...ahead],octaves=clamp(2*Math.log2(grain/Number(u.u_noiseFinest)),0,c.LAST_OCTAVE[0]),octave=Math.floor(octaves),late=octaves-
-octave,local=toFrame(geometry.frame,subtract2(at.position,geometry.center)),noise=noiseAround(local,octave,geometry.planar,
-areSparse,u,c),weights2=steps.map(({weight})=>weight),squares=total(weights2.map(weight=>weight**2)),pairs=weights2.slice(
-1).map((weight,n)=>weight*weights2[n]),near=total(pairs)/squares,apart=Number(u.u_spacing)*2**(late/2),shares2=[1-late,late],
-alone=Math.hypot(...shares2),variance=shares2.map((w,n)=>w**2*shared(apart*Math.SQRT1_2**n,near,c)),slow=u.u_fade?clamp(
-layers(2)[3]/Number(u.u_fade),0,1):1,gain=(moves?slow**2*(3-2*slow):0)*alone*total(weights2)/Math.sqrt(squares*total(variance)),
-moved=mover(at),lagUnit=layers(0)[3]*slices.lagUnit,samples=steps.map(({displacement,lag,weight})=>{let[fine,coarse]=noise(
-displacement),value=(shares2[0]*fine+shares2[1]*coarse)/alone,position=moved(displacement)??at.position,share=weight/total(
-weights2);return{position,lag:lag*lagUnit,weight:share,noise:value,grey:greyOf(value,1,c)}}),mean=total(samples.map(sample=>sample.
-weight*sample.noise));return{samples,middle:back.length,level:Math.log2(grain/Number(u.u_texel)),mean,gain,grey:greyOf(gain*
-mean,Number(settings.contrast),c)}}var TITLE2="Path through this point",FEWEST_DIGITS=4,MOST_DIGITS=14,VELOCITY_DIGITS=3,PATIENCE_MS=5e3,RETRY_MS=40,PLACES_IN_VIEW=200,
+sign*by),lag:-sign*lag,weight}),step=stepAt(at(2*lag-from),bend)}return result2}function shared(apart,near,c){let square=apart**
+2,decay=c.BELL[0]*square-Math.log(Math.max(near,c.LEAST_SQUARE[0])),bend=c.BELL_BEND[0]*square**2,bent=bend/decay**2,many=Math.
+sqrt(Math.PI/(decay*(1+bent*(c.BENT[0]-c.BENT_TWICE[0]*bent)))),few=1+2*Math.exp(-decay-bend);return Math.max(many,few)}
+var total=values=>values.reduce((sum,value)=>sum+value,0);function greyOf(value,contrast,c){return 1/(1+Math.exp(-c.TONE_SLOPE[0]*
+contrast*value))}function pixelSum({at,settings,camera,rows}){let{header}=at.scene,{geometry,slices,shaders}=header;if(header.
+image||isMoving(header,settings,!0))return null;let c=constantsOf(shaders.fragment),focus=camera.state.focal_point,view={
+...{eye:camera.eye,between:at.moment[2],time:slices.times[0],clock:0,still:!0},focus,anchor:[0,0,0],density:1,pixel:1},u=uniforms(
+header,settings,view),grain=grainAt(at,settings,camera,rows),spacing=Number(u.u_spacing)*grain,layers=layersAt(at),moves=length2(
+layers(0).slice(0,3))>c.LEAST_SPEED[0],sides=moves?[...Array(Number(u.u_sides)).keys()]:[],areSparse=isSparse(header,settings),
+set=Number(u.u_samples),whole=(u.u_sides===2?Math.floor(set/2):set-1)*stretchAt(at,settings,camera),sine=areSparse&&!isSignFree(
+header)?partingAt(at,.5*whole*spacing):0,cosine=Math.sqrt(Math.max(1-sine**2,0)),parting=clamp(2*sine,0,1),together=c.TOGETHER[0]*
+cosine/Math.max(Math.abs(sine),c.LEAST_SPEED[0]),count2=whole*Math.min(together,1),[back=[],ahead=[]]=sides.map(side=>sideSteps(
+layers,side,spacing,count2,parting,u,c)),own=Math.max(kernelAt(1,0,parting,u,c),c.LEAST_WEIGHT[0]),steps=[...back.reverse(),
+{displacement:[0,0,0],lag:0,weight:own},...ahead],octaves=clamp(2*Math.log2(grain/Number(u.u_noiseFinest)),0,c.LAST_OCTAVE[0]),
+octave=Math.floor(octaves),late=octaves-octave,local=toFrame(geometry.frame,subtract2(at.position,geometry.center)),noise=noiseAround(
+local,octave,geometry.planar,areSparse,u,c),weights2=steps.map(({weight})=>weight),squares=total(weights2.map(weight=>weight**
+2)),pairs=weights2.slice(1).map((weight,n)=>weight*weights2[n]),near=total(pairs)/squares,apart=Number(u.u_spacing)*2**(late/
+2),shares2=[1-late,late],alone=Math.hypot(...shares2),variance=shares2.map((w,n)=>w**2*shared(apart*Math.SQRT1_2**n,near,
+c)),slow=u.u_fade?clamp(layers(2)[3]/Number(u.u_fade),0,1):1,gain=(moves?slow**2*(3-2*slow):0)*alone*total(weights2)/Math.
+sqrt(squares*total(variance)),moved=mover(at),lagUnit=layers(0)[3]*slices.lagUnit,samples=steps.map(({displacement,lag,weight})=>{
+let[fine,coarse]=noise(displacement),value=(shares2[0]*fine+shares2[1]*coarse)/alone,position=moved(displacement)??at.position,
+share=weight/total(weights2);return{position,lag:lag*lagUnit,weight:share,noise:value,grey:greyOf(value,1,c)}}),mean=total(
+samples.map(sample=>sample.weight*sample.noise));return{samples,middle:back.length,level:Math.log2(grain/Number(u.u_texel)),
+mean,gain,grey:greyOf(gain*mean,Number(settings.contrast),c)}}var TITLE2="Path through this point",FEWEST_DIGITS=4,MOST_DIGITS=14,VELOCITY_DIGITS=3,PATIENCE_MS=5e3,RETRY_MS=40,PLACES_IN_VIEW=200,
 DEGREE_M=111195,DOT_RADIUS=8;function vectorText(vector,size,digits,flat){return`(${vector.slice(0,flat?2:3).map(x=>{let value=Math.
 abs(x)<10**(-1-digits)*size?0:x;return digits>5?String(Number(value.toPrecision(digits))):numberText(value,digits)}).join(
 ", ")})`}var liesAcross=({planar,frame})=>planar&&Math.abs(frame[8])>.999;function placeText(position,header,parts,camera,isWithUnit=!1){

@@ -83,13 +83,13 @@ def weight(side: float, t: float | Floats, parting: Floats, values: Values) -> F
 
 def shared(apart: Floats, near: Floats) -> Floats:
     """Variance of a sum, relative to independent samples; ``apart`` in grains, weights ``near``."""
-    total = np.ones(np.broadcast_shapes(np.shape(apart), np.shape(near)))
-    for m in range(1, const.SHARED_TERMS + 1):
-        d = m * m * np.square(apart)
-        near_d = np.minimum(d, const.BELL_END)
-        bell = np.exp(-near_d * (const.BELL + const.BELL_BEND * near_d))
-        total += np.where(d > const.BELL_END, 0.0, 2.0 * np.power(near, m * m) * bell)
-    return total
+    square = np.square(apart)
+    decay = const.BELL * square - np.log(np.maximum(near, const.LEAST_SQUARE))
+    bend = const.BELL_BEND * np.square(square)
+    bent = bend / np.square(decay)
+    many = np.sqrt(np.pi / (decay * (1.0 + bent * (const.BENT - const.BENT_TWICE * bent))))
+    few = 1.0 + 2.0 * np.exp(-decay - bend)
+    return np.asarray(np.maximum(many, few))
 
 
 class Summing:
