@@ -5,6 +5,8 @@ from typing import Any
 
 import numpy as np
 import pytest
+from earth_data import AXIS, RATE, on_sphere, winds
+from mesh_data import globe, ugrid
 from numpy.typing import NDArray
 from scipy.spatial import ConvexHull, Delaunay
 
@@ -305,3 +307,19 @@ def test_a_picture_is_coloured_by_what_is_derived() -> None:
     timed = FlowField.from_arrays(field.points, field.velocity, time_unit="s")
     for name, unit in {"vorticity": "1/s", "okubo_weiss": "1/s²"}.items():
         assert timed.with_derived(name).unit_of(name) == unit
+
+
+@pytest.mark.parametrize("projection", ["equalearth", "+proj=eck4"])
+@pytest.mark.parametrize("is_mesh", [False, True])
+def test_vorticity_is_right_up_to_poles_that_are_lines(projection: str, is_mesh: bool) -> None:
+    flow = winds(np.arange(-180.0, 180.0, 6.0), np.arange(80.0, 89.6, 0.5))
+    if is_mesh:
+        flow = ugrid(globe(800), at="node")[0]
+    field = FlowField.from_xarray(flow, projection=projection).with_derived("vorticity")
+    assert field.projection is not None
+    lon, lat = field.projection.lonlat(field.surface.points)
+    exact = 2 * RATE / EARTH_RADIUS * (on_sphere(lon, lat) @ AXIS)
+    found = np.asarray(field.scalars["vorticity"])[0]
+    near = field.valid & (np.abs(lat) > 88)
+    assert near.sum() > 50
+    np.testing.assert_allclose(found[near], exact[near], rtol=0, atol=0.05 * np.abs(exact).max())

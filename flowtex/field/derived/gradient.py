@@ -63,11 +63,14 @@ def node_gradient(
     if known is not None:
         valid = valid & known
     is_flat_map = points is not surface.points
+    has_vectors = np.ones_like(valid)
     if is_flat_map and projection is not None:
-        valid = valid & _has_vectors(points, projection, poles=isinstance(surface, GridSurface))
+        has_vectors = _has_vectors(points, projection, poles=isinstance(surface, GridSurface))
     if isinstance(surface, TriangleSurface):
-        gradient = _triangle_gradient(surface, points, valid)
-        return _on_sphere(gradient, points, projection)
+        poles = point_nodes(surface, points, valid & ~has_vectors)
+        gradient = _triangle_gradient(surface, points, valid & has_vectors)
+        return _on_sphere(replace(gradient, poles=poles), points, projection)
+    valid = valid & has_vectors
     # On the sphere one turn leads to the same place.
     if is_flat_map:
         offset = np.zeros((2, 3))
@@ -111,7 +114,7 @@ class NodeGradient:
 
     directions: Floats
     derivative: Callable[[Floats], Floats]
-    poles: tuple[PointLine, ...] = ()
+    poles: tuple[PointLine | PointNodes, ...] = ()
     #: Normal of the surface where it is known exactly, as on the Earth, (3, J, I).
     normal: Floats | None = None
 
@@ -121,13 +124,13 @@ class NodeGradient:
         It is NaN where the nodes beside them do not lie all around.
         """
         for pole in self.poles:
-            lines = np.moveaxis(nodal, pole.axis, 0)
-            ring = lines[pole.beside]
+            ring = pole.ring_of(nodal)
             finite = np.isfinite(ring)
             share = pole.weights[finite].sum()
-            lines[pole.line] = np.nan
+            mean = np.nan
             if share >= NEEDED_RING:
-                lines[pole.line] = pole.weights[finite] @ ring[finite] / share
+                mean = float(pole.weights[finite] @ ring[finite] / share)
+            pole.write(nodal, mean)
         return nodal
 
     def of_vectors(self, vectors: Floats) -> Floats:
@@ -154,6 +157,45 @@ class PointLine(NamedTuple):
     line: int  #: Its number, 0 or -1.
     beside: int  #: Number of the line beside it.
     weights: Floats  #: Shares of the nodes beside it in the mean around it; 0 at a tip.
+
+    def ring_of(self, nodal: Floats) -> Floats:
+        """Return the values at nodes, (J, I), of the line beside it."""
+        return np.asarray(np.moveaxis(nodal, self.axis, 0)[self.beside])
+
+    def write(self, nodal: Floats, value: float) -> None:
+        """Give its nodes a value, in place."""
+        np.moveaxis(nodal, self.axis, 0)[self.line] = value
+
+
+class PointNodes(NamedTuple):
+    """Nodes of triangles that are all at one pole, which a map draws as a line."""
+
+    nodes: Indices
+    beside: Indices
+    weights: Floats  #: Shares of the nodes beside them in the mean around the pole.
+
+    def ring_of(self, nodal: Floats) -> Floats:
+        """Return the values at nodes, (1, N), of those beside them."""
+        return np.asarray(nodal[0, self.beside])
+
+    def write(self, nodal: Floats, value: float) -> None:
+        """Give the nodes a value, in place."""
+        nodal[0, self.nodes] = value
+
+
+def point_nodes(surface: TriangleSurface, points: Floats, without: Bools) -> tuple[PointNodes, ...]:
+    """Return the nodes at poles, of those ``without`` vectors (1, N), by places on the sphere."""
+    found = []
+    triangles = surface.triangles[surface.cells]
+    for pole in (-1.0, 1.0):
+        at_pole = without[0] & (np.sign(points[0, :, 2]) == pole)
+        nodes = np.flatnonzero(at_pole)
+        corners = triangles[at_pole[triangles].any(axis=1)]
+        ring = np.setdiff1d(corners, nodes)
+        weights = _weights_around(points[0, nodes], points[0, ring])
+        if weights is not None:
+            found.append(PointNodes(nodes, ring, weights))
+    return tuple(found)
 
 
 def point_lines(points: Floats) -> tuple[PointLine, ...]:

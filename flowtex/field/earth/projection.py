@@ -53,6 +53,11 @@ TORN = 2.0  #: A step that is longer than the opposite one by this factor crosse
 INSIDE = 1 - 1e-7  #: Factor by which a position outside the map is moved towards its middle.
 #: Ratio of the scales of a map along two directions beyond which it tears a point open.
 MOST_SHEARED = 1e3
+#: The same within POLAR degrees of a pole that a map draws as a line, where directions are exact.
+MOST_SHEARED_AT_LINE = 1e9
+POLAR = 2.0
+#: Difference of two steps along a parallel, as a share of both, up to which it is a line.
+STRAIGHT = 1e-4
 
 
 @dataclass(frozen=True)
@@ -217,8 +222,28 @@ class Projection:
         east, north = self._directions(lon, lat)
         area = np.linalg.norm(np.cross(east, north), axis=-1)
         longest = np.maximum(dot(east, east), dot(north, north))
+        most = np.where(self._is_on_line(lon, lat), MOST_SHEARED_AT_LINE, MOST_SHEARED)
         with np.errstate(invalid="ignore"):
-            return np.asarray(longest < MOST_SHEARED * area)
+            return np.asarray(longest < most * area)
+
+    def _is_on_line(self, lon: Floats, lat: Floats) -> Bools:
+        """Return where a map draws the parallels near a pole as straight lines, (...)."""
+        result = np.abs(lat) > 90 - POLAR
+        near_lon = lon[result]
+        near_lat = lat[result]
+        straight = np.zeros(near_lon.shape, dtype=bool)
+        for aside in (0, 2 * STEP, -2 * STEP):  # a tear of the map may be nearer than a step
+            places = []
+            for step in (-STEP, 0, STEP):
+                places.append(self.positions(near_lon + aside + step, near_lat))
+            backward = places[1] - places[0]
+            forward = places[2] - places[1]
+            apart = np.linalg.norm(forward - backward, axis=-1)
+            size = np.linalg.norm(forward + backward, axis=-1)
+            with np.errstate(invalid="ignore"):
+                straight |= apart <= STRAIGHT * size
+        result[result] = straight
+        return np.asarray(result)
 
     def _directions(self, lon: Floats, lat: Floats) -> tuple[Floats, Floats]:
         """Return the change of position for a metre eastward and a metre northward."""
