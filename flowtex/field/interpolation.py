@@ -50,6 +50,14 @@ def steps_around(times: Floats, time: float) -> tuple[int, int, float]:
     return int(step), int(step) + 1, float(share)
 
 
+def nearer_step(moment: tuple[int, int, float]) -> tuple[int, int, float]:
+    """Return the moment of the nearer of two steps, the later one half-way."""
+    before, after, share = moment
+    if share < 0.5:
+        after = before
+    return after, after, 0.0
+
+
 def at_moment(
     steps: Any,
     moment: tuple[int, int, float],

@@ -27,7 +27,7 @@ from flowtex.field.derived.quantities import (
 from flowtex.field.earth.projection import Projection
 from flowtex.field.finer import check_derivable, finest_of
 from flowtex.field.grids.grid_nodes import weighted_axis
-from flowtex.field.interpolation import at_moment, steps_around
+from flowtex.field.interpolation import at_moment, nearer_step, steps_around
 from flowtex.field.locate import (
     CURVED_TOLERANCE,
     EARTH,
@@ -43,6 +43,7 @@ from flowtex.field.locate import (
 from flowtex.field.scalars import Scalars
 from flowtex.field.steps import LazySteps, Steps
 from flowtex.field.units import factor, speed_unit
+from flowtex.field.validation import known_nodes
 
 #: Share of the way to the middle of a cell by which its corners are moved to one side of a map.
 INWARD = 1e-6
@@ -150,10 +151,7 @@ def _with_others(
 def _values_at(field: Any, index: ArrayLike, time: Any) -> PointValues:
     """Return the values at (j, i) from the nodes that are in memory."""
     point = value_point(field, index)
-    moment = field.first_time
-    if time is not None and not field.steady:
-        moment = time_within(field.start, field.times, time)
-    between = steps_around(field.times, moment)
+    moment, between = _known_steps(field, point, time)
 
     def value(steps: Steps, corners: Callable[[Floats], Floats] = point.corners) -> Floats:
         return at_moment(steps, between, corners)
@@ -180,6 +178,8 @@ def _values_at(field: Any, index: ArrayLike, time: Any) -> PointValues:
         values["speed"] = float(weights @ value(field.index_velocity.speed) * scale)
     if field.projection is not None:
         values |= _on_earth(field, field.projection, point, values, partial(value, field.velocity))
+    if not _is_known(field, point, between):
+        values |= _without_velocity(values)
     return PointValues(
         index=point.index,
         time=moment,
@@ -189,6 +189,42 @@ def _values_at(field: Any, index: ArrayLike, time: Any) -> PointValues:
         speed_label=field.speed_label,
         **values,
     )
+
+
+def _known_steps(
+    field: Any, point: SurfacePoint, time: Any
+) -> tuple[float, tuple[int, int, float]]:
+    """Return a time as a number, the steps around it and the share of the later one.
+
+    Where one of the steps has no data, it is the nearer of both alone.
+    """
+    moment = field.first_time
+    if time is not None and not field.steady:
+        moment = time_within(field.start, field.times, time)
+    between = steps_around(field.times, moment)
+    if not _is_known(field, point, between):
+        between = nearer_step(between)
+    return moment, between
+
+
+def _without_velocity(values: Mapping[str, Any]) -> dict[str, Any]:
+    """Return NaN for each part of the velocity among the values at a point."""
+    unknown: dict[str, Any] = {"speed": np.nan, "velocity": np.full(3, np.nan)}
+    for name in ("eastward", "northward"):
+        if name in values:
+            unknown[name] = np.nan
+    return unknown
+
+
+def _is_known(field: Any, point: SurfacePoint, between: tuple[int, int, float]) -> bool:
+    """Return whether all nodes that have a share in the values at a point have data."""
+    first, last, share = between
+    if share == 0:
+        last = first
+    elif share == 1:
+        first = last
+    known = point.corners(known_nodes(field, first, last))
+    return bool(known[point.weights > 0].all())
 
 
 def _scalar_at(

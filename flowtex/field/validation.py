@@ -305,6 +305,10 @@ def filled_gaps(
     if isinstance(velocity, LazySteps):
         numbers = _steps_to_compare(velocity)
         masks: list[Bools] | Bools = [_known(velocity[number]) for number in numbers]
+        if len(numbers) < len(velocity) > 1 and isinstance(scalars, Mapping):
+            # A step that is read later may lack data: there the speed is missing, and not 0.
+            speeds = {"speed": map_steps(velocity, _speed), **scalars}
+            unchanged = velocity, speeds, {"speed": unit, **(units or {})}, ""
     else:
         try:
             velocity = with_gaps("velocity", velocity)
@@ -351,10 +355,17 @@ def _speed(step: Floats) -> Floats:
 def known_nodes(field: Any, first: int, last: int) -> Bools:
     """Return the valid nodes of a field that have data at all steps of a range, (J, I)."""
     known: Bools = field.valid.copy()
-    if field.uncertainty == NO_DATA:
-        for step in range(first, last + 1):
+    for step in range(first, last + 1):
+        if field.uncertainty == NO_DATA:
             known &= np.asarray(field.scalars[NO_DATA][step]) < 1
+        elif has_late_gaps(field):
+            known &= ~np.isnan(field.scalars["speed"][step])
     return known
+
+
+def has_late_gaps(field: Any) -> bool:
+    """Return whether data may be missing at steps that are read later, where the speed is NaN."""
+    return isinstance(field.velocity, LazySteps) and "speed" in field.scalars
 
 
 def _known(step: Floats) -> Bools:

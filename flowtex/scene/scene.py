@@ -31,7 +31,7 @@ from flowtex.field.derived.quantities import SIGNED, steps_of
 from flowtex.field.folds import FOLDED, mixes_at_folds
 from flowtex.field.interpolation import at_moment, steps_around
 from flowtex.field.options import FieldOptions, option_names
-from flowtex.field.steps import Steps
+from flowtex.field.steps import LazySteps, Steps
 from flowtex.rendering.cpu.shade import mean_colours
 from flowtex.rendering.structure import STRUCTURE, Structure, check_structure, shared_structure
 from flowtex.scene.fields import is_tiled, read_field, share_field, with_scalars
@@ -489,16 +489,23 @@ class Scene:
 
     @property
     def lacks_values(self) -> bool:
-        """Whether the scalar is missing at a valid node of the drawn surface at some time."""
+        """Whether the scalar is missing at a valid node of the drawn surface at some time.
+
+        Of steps that are read late, these are typical ones and the present one.
+        """
         name = self.scalar_name
         if name is None or name not in self.field.scalars:  # the speed, which all nodes have
             return False
+        whole = self.whole
+        places = valued_places(whole, name)
         key = (name, self.pyramid is None)
         if key not in self._lacks:
-            whole = self.whole.typical
-            values = np.asarray(self.scalar_steps(name, whole))
-            self._lacks[key] = bool(np.isnan(values[:, valued_places(whole, name)]).any())
-        return self._lacks[key]
+            values = np.asarray(self.scalar_steps(name, whole.typical))
+            self._lacks[key] = bool(np.isnan(values[:, places]).any())
+        if self._lacks[key] or not isinstance(whole.velocity, LazySteps):
+            return self._lacks[key]
+        present = self.scalar(name, whole)[None]
+        return bool(np.isnan(present[:, places]).any())
 
     def copy(self) -> Scene:
         """Return an independent scene that shows the same, for a thread."""

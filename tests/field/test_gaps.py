@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from scipy.spatial import Delaunay
 
 from flowtex import FlowField
 from flowtex._util.array_types import Floats
@@ -82,3 +83,35 @@ def test_a_value_beside_a_step_without_is_that_of_the_nearer_step() -> None:
         scene.time = time
         assert np.isnan(scene.scalar("speed")[NOT_NOW]).all() == lacks
         assert (scene.scalar("speed")[15:] == 5).all()
+
+
+@pytest.mark.parametrize("is_mesh", [False, True])
+def test_gaps_of_a_step_that_is_read_late_have_no_values(*, is_mesh: bool) -> None:
+    velocity = np.broadcast_to([3.0, 4.0], (9, *X.shape, 2)).copy()
+    velocity[5, *NOT_NOW] = np.nan  # neither the first, the middle nor the last step
+    nodes = np.stack([X, Y], axis=-1)
+    field = FlowField.from_arrays(nodes, late(velocity))
+    if is_mesh:
+        corners = Delaunay(nodes.reshape(-1, 2)).simplices
+        field = FlowField.from_triangles(
+            nodes.reshape(-1, 2), corners, late(velocity.reshape(9, -1, 2))
+        )
+    lacks = np.zeros(X.shape, dtype=bool)
+    lacks[NOT_NOW] = True
+    assert np.isnan(np.asarray(field.scalars["speed"][5]).reshape(X.shape)[lacks]).all()
+    vorticity = np.asarray(field.derive("vorticity")[5]).reshape(X.shape)
+    assert np.isnan(vorticity[lacks]).all()
+    assert np.nanmax(np.abs(vorticity)) < 1e-9  # also beside the gap
+    place = float(X[10, 15]), float(Y[10, 15])
+    speeds = []
+    for time in (4.0, 4.4, 4.6, 5.0, 5.6, 8.0):
+        values = field.at(*place, time=time)
+        assert values is not None
+        speeds.append(values.speed)
+    np.testing.assert_allclose(speeds, [5, 5, np.nan, np.nan, 5, 5])
+    scene = Scene(field)
+    found = []
+    for time in (4.0, 5.0, 6.0):
+        scene.time = time
+        found.append(scene.lacks_values)
+    assert found == [False, True, False]

@@ -21,7 +21,7 @@ from flowtex.field.derived.gradient import NodeGradient, node_gradient, true_vel
 from flowtex.field.finer import check_derivable, finest_of
 from flowtex.field.steps import LazySteps, Steps, map_steps, scaled_steps
 from flowtex.field.units import NONE, VELOCITIES, factor, measures, parsed, speed_unit
-from flowtex.field.validation import NO_DATA, known_nodes
+from flowtex.field.validation import NO_DATA, has_late_gaps, known_nodes
 
 #: Functions of the gradient a[m, n], the change of component m along direction n.
 DERIVED: dict[str, Callable[[Floats], Floats]] = {
@@ -75,11 +75,11 @@ def derived_steps(name: str, field: Any) -> Steps:
         raise FieldError(
             f"{name!r} cannot be derived; expected one of {', '.join((*DERIVED, *FOLLOWED))}"
         )
-    if field.uncertainty == NO_DATA:
-        return LazySteps(len(field.times), partial(_of_known, name, field))
     surface = field.surface
     projection = field.projection
     gradient = node_gradient(surface, projection)
+    if field.uncertainty == NO_DATA or has_late_gaps(field):
+        return LazySteps(len(field.times), partial(_of_known, name, field, gradient))
     return map_steps(field.velocity, partial(_derived, name, surface.points, projection, gradient))
 
 
@@ -92,10 +92,14 @@ def _derived(
         return gradient.with_poles(DERIVED[name](gradient.of_vectors(moved)))
 
 
-def _of_known(name: str, field: Any, number: int) -> Floats:
-    """Return a derived scalar of a step, from the nodes that have data there."""
+def _of_known(name: str, field: Any, gradient: NodeGradient, number: int) -> Floats:
+    """Return a derived scalar of a step, from the nodes that have data there.
+
+    The ``gradient`` is that of all nodes.
+    """
     known = known_nodes(field, number, number)
-    gradient = node_gradient(field.surface, field.projection, known)
+    if (known != field.valid).any():
+        gradient = node_gradient(field.surface, field.projection, known)
     return _derived(name, field.surface.points, field.projection, gradient, field.velocity[number])
 
 

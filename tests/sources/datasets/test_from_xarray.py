@@ -112,7 +112,7 @@ def test_all_times_are_there_and_read_when_they_are_shown() -> None:
     )
     ds["temperature"] = ds.uo.rename("temperature")
     field = FlowField.from_xarray(ds, globe=True)
-    assert set(field.scalars) == {"temperature"}
+    assert set(field.scalars) == {"speed", "temperature"}
     assert len(field.times) == 9 and field.times[1] == 86400.0
     assert set(read) == {0}
     speed = field.at_step(4).speed
