@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from flowtex._util.arguments import are_paths, checked_source
+from flowtex._util.array_types import AnyArray
 from flowtex._util.cache import ByteCache, WeakCache, digest
 from flowtex.errors import FieldError
 from flowtex.field import FlowField
@@ -37,6 +38,8 @@ KEPT_BYTES = 500_000_000  #: Memory limit of the cache of drawn fields and trace
 DATA = "Data"  #: Name of a scalar array without a name, as in PyVista.
 
 _fields: WeakCache[FlowField] = WeakCache()
+#: Values of an array by which fields are told apart before all values are compared.
+MOST_SAMPLED = 2000
 #: Attributes that are compared as texts, or not at all.
 APART = {"formula", "start", "section", "reading"}
 
@@ -55,10 +58,23 @@ def with_scalars(field: FlowField, name: str | None) -> FlowField:
 def share_field(field: FlowField) -> FlowField:
     """Return an equal field that is in use already, or this one.
 
-    A notebook shows one mesh many times, and makes a new field each time.
+    A notebook shows one mesh many times, and makes a new field each time. Few fields are alike in a
+    sample of their values, so all values are seldom read.
     """
     if has_pyramid(field):
         return field
+    words, arrays = _identity(field)
+    samples = []
+    for array in arrays:
+        samples.append(array.reshape(-1)[:: 1 + array.size // MOST_SAMPLED])
+    found = _fields.get(digest(*samples, words=words), lambda: field)
+    if found is field or _are_equal(arrays, _identity(found)[1]):
+        return found
+    return _fields.get(digest(*arrays, words=words), lambda: field)
+
+
+def _identity(field: FlowField) -> tuple[list[object], list[AnyArray]]:
+    """Return what makes a field: texts, numbers, shapes, and the arrays themselves."""
     formula = field.formula and (field.formula.texts, field.formula.parameters)
     words: list[object] = [str(formula), str(field.start)]
     arrays = []
@@ -71,13 +87,26 @@ def share_field(field: FlowField) -> FlowField:
             words += [name, key]
             if isinstance(part, np.ndarray):
                 arrays.append(part)
-                words.append(True)
+                words.append(part.shape)
             elif isinstance(part, LazySteps):
                 # Lazy steps are identified by their object, which a field keeps alive.
                 words.append(id(part))
             else:
                 words.append(part)
-    return _fields.get(digest(*arrays, words=words), lambda: field)
+    return words, arrays
+
+
+def _are_equal(arrays: list[AnyArray], others: list[AnyArray]) -> bool:
+    """Return whether arrays of the same shapes and types have the same values."""
+    for one, other in zip(arrays, others, strict=True):
+        if not np.array_equal(_bytes(one), _bytes(other)):
+            return False
+    return True
+
+
+def _bytes(array: AnyArray) -> AnyArray:
+    """Return the bytes of an array, (n,)."""
+    return np.ascontiguousarray(array).reshape(-1).view(np.uint8)
 
 
 def read_field(mesh: Any, options: FieldOptions, time: float | str | None = None) -> FlowField:
