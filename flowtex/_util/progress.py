@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import threading
 import time
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Generator, Iterable, Iterator
 from concurrent.futures import Executor, Future, ThreadPoolExecutor
 from contextlib import contextmanager
 from contextvars import ContextVar
@@ -166,6 +166,18 @@ def track(items: Iterable[T], total: int, text: str, *, show: bool = True) -> It
     finally:
         if bar is not None:
             bar.stop()
+
+
+def finish(work: Generator[None, None, T], total: int, text: str) -> T:
+    """Return the result of work that yields before each of its parts, with a bar."""
+    results: list[T] = []
+
+    def parts() -> Iterator[None]:
+        results.append((yield from work))
+
+    for _ in track(parts(), total, text):
+        pass
+    return results[0]
 
 
 def _bar() -> Progress:

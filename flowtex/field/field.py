@@ -17,6 +17,7 @@ from numpy.typing import ArrayLike
 
 from flowtex._util.arguments import checked_count, is_number
 from flowtex._util.array_types import Bools, Floats, Indices
+from flowtex._util.progress import finish
 from flowtex.errors import FieldError, notify
 from flowtex.field.constructors import FieldConstructors
 from flowtex.field.earth.projection import Projection
@@ -39,7 +40,7 @@ from flowtex.field.steps import (
     scaled_steps,
     typical_steps,
 )
-from flowtex.field.triangles.triangle_arguments import triangle_nodes
+from flowtex.field.triangles.triangle_arguments import READING_PARTS, triangle_nodes
 from flowtex.field.triangles.triangle_surface import Surface, TriangleSurface
 from flowtex.field.validation import ALL_AT_REST, prepared
 
@@ -399,7 +400,8 @@ class FlowField(FieldConstructors, FieldQuantities):
         words |= {"long_names": dict(long_names or {}), "on_cells": tuple(cell_scalars or ())}
         on_globe = projection is not None and projection.is_globe
         parts = points, triangles, v, t, valid, data, cell_scalars or {}
-        surface, nodes = triangle_nodes(*parts, on_globe=on_globe)
+        reading = triangle_nodes(*parts, on_globe=on_globe)
+        surface, nodes = finish(reading, READING_PARTS, "Reading")
         flow = cls._moving(t, scale, periodic=(False, False), **words, **nodes)
         flow.__dict__["surface"] = surface  # equal to what the property would make
         if "speed" in (scalars or {}):

@@ -17,6 +17,7 @@ from flowtex._util.arrays import bounds, dot, first_places, norm, numbered, row_
 from flowtex.field.triangles.triangle_nodes import (
     neighbours,
     nodal_sums,
+    touching,
     triangle_normals,
     uneven_nodes,
 )
@@ -113,7 +114,7 @@ def split_nodes(
     bent = uneven | _turned_nodes(triangles, crosses, count)
     if not bent.any():
         return triangles, np.arange(count)
-    around = np.flatnonzero(np.logical_or.reduce(bent.take(triangles.T)))
+    around = np.flatnonzero(touching(triangles, bent))
     near = triangles[around]
     edges = _Edges.of(near, neighbours(points, near))
     sharp = edges.sharp(points, crosses[around])
@@ -160,13 +161,22 @@ def _in_noise(nodes: Indices, ends: Indices, count: int) -> Bools:
 
 def _turned_nodes(triangles: Indices, crosses: Floats, count: int) -> Bools:
     """Return the nodes (count,) with a triangle that is turned far from their mean normal."""
-    normals = nodal_sums(triangles, crosses, count)
+    area = norm(crosses)
+    units = crosses / np.maximum(area, np.finfo(float).tiny)[:, None]
+    around = np.bincount(triangles.ravel(), minlength=count)
+    # A triangle is turned by no more than all together.
+    apart: Bools = around - norm(nodal_sums(triangles, units, count)) > 1 - SHARP_HALF
+    if not apart.any():
+        return apart
+    near = np.flatnonzero(touching(triangles, apart))
+    corners = triangles[near]
+    normals = nodal_sums(corners, crosses[near], count)
     # Divided by zero, a normal turns all of its triangles, as those of the other sign do.
     normals /= np.maximum(norm(normals), np.finfo(float).tiny)[:, None]
     result = np.zeros(count, dtype=bool)
-    for block in row_blocks(len(triangles), 1):
-        corners = triangles[block]
-        away = np.einsum("mkc,mc->mk", normals.take(corners, axis=0), crosses[block])
-        turned = away <= SHARP_HALF * norm(crosses[block])[:, None]
-        result[corners[turned]] = True
-    return result
+    for block in row_blocks(len(near), 1):
+        nodes = corners[block]
+        away = np.einsum("mkc,mc->mk", normals.take(nodes, axis=0), crosses[near[block]])
+        turned = away <= SHARP_HALF * area[near[block], None]
+        result[nodes[turned]] = True
+    return np.asarray(result & apart)

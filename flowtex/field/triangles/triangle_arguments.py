@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Generator, Mapping
 from dataclasses import dataclass
 from functools import partial
 from typing import Any
@@ -22,6 +22,7 @@ from flowtex.field.triangles.triangle_nodes import (
     solid_normals,
     solid_triangles,
     sums_at,
+    touching,
     uneven_nodes,
 )
 from flowtex.field.triangles.triangle_surface import TriangleSurface
@@ -36,6 +37,9 @@ from flowtex.field.validation import (
     with_gaps,
 )
 
+#: Parts of :func:`triangle_nodes`, of which each takes a second for some million triangles.
+READING_PARTS = 4
+
 
 def triangle_nodes(
     points: ArrayLike,
@@ -47,9 +51,10 @@ def triangle_nodes(
     cell_scalars: Mapping[str, Any],
     *,
     on_globe: bool,
-) -> tuple[TriangleSurface, dict[str, Any]]:
+) -> Generator[None, None, tuple[TriangleSurface, dict[str, Any]]]:
     """Check arrays; return the surface and the arguments of a field whose nodes are a row, (1, N).
 
+    It yields before each of the :data:`READING_PARTS`, so that they can be shown and cancelled.
     Nodes at one place are joined, but at sharp edges each face has its own; parts that cannot be
     drawn are left out. The arguments are described at :meth:`flowtex.FlowField.from_triangles`.
 
@@ -59,6 +64,7 @@ def triangle_nodes(
         When shapes or types do not fit together, values exceed the range of computations, or no
         triangle has three nodes with data. The error lists all faults of the arrays.
     """
+    yield
     p, masked_points = as_numbers("points", points)
     v, masked = as_numbers("velocity", first_step(velocity))
     corners = _corners_of(triangles)
@@ -85,10 +91,13 @@ def triangle_nodes(
     if isinstance(velocity, LazySteps):
         steps = velocity.map(partial(_row, ok))
     data = _rows(scalars, arrays, len(p))
+    yield
     drawn, pairs, crosses = _usable(p, corners.astype(np.intp, copy=False))
     solid = _rows_of(corners, drawn)
     _check_any_usable(ok, solid)
+    yield
     placed = _placed(_known(p, ok), solid, crosses, pairs, ok, on_globe=on_globe)
+    yield
     surface = placed.surface
     drawn = drawn[placed.kept]
     if not placed.unchanged:
@@ -189,11 +198,15 @@ def _placed(
     uneven = uneven_nodes(corners, len(p))
     same = merged_nodes(p, corners, uneven, pairs)
     is_joined = same != np.arange(len(p))
-    kept = ~np.logical_or.reduce(is_joined.take(corners.T))
-    kept[~kept] = solid_triangles(p, same[corners[~kept]])
-    corners = _rows_of(corners, np.flatnonzero(kept))
+    kept = np.ones(len(corners), dtype=bool)
+    used = corners
+    if is_joined.any():
+        kept = ~touching(corners, is_joined)
+        kept[~kept] = solid_triangles(p, same[corners[~kept]])
+        corners = _rows_of(corners, np.flatnonzero(kept))
+        used = same[corners]
     is_used = np.zeros(len(p), dtype=bool)
-    is_used[same[corners]] = True
+    is_used[used] = True
     number = np.where(is_used, np.cumsum(is_used) - 1, -1)[same]
     given = np.flatnonzero(number >= 0)
     valid = np.bincount(number[given], ok[given]) > 0

@@ -10,7 +10,7 @@ import numpy as np
 import scipy
 
 from flowtex._util.array_types import Bools, Floats, Indices
-from flowtex._util.arrays import cross, dot, norm, row_blocks
+from flowtex._util.arrays import bounds, cross, dot, norm, row_blocks
 from flowtex.field.steps import Steps, map_steps
 
 #: Twice the area of a triangle over the square of its longest side, below which it is flat.
@@ -36,16 +36,16 @@ def solid_triangles(p: Floats, corners: Indices) -> Bools:
 
 def solid_normals(p: Floats, corners: Indices) -> tuple[Bools, Floats]:
     """Return which triangles (M,) have an area, and :func:`triangle_normals`."""
-    solid = np.empty(len(corners), dtype=bool)
-    normals = np.empty((len(corners), 3))
-    for block in row_blocks(len(corners), 1):
-        a, b, c = p.take(corners[block].T, axis=0)
-        one = b - a
-        two = c - a
-        three = c - b
-        longest = np.maximum(np.maximum(dot(one, one), dot(two, two)), dot(three, three))
-        normals[block] = across = cross(one, two)
-        solid[block] = norm(across) > FLAT_TRIANGLE * longest
+    normals = triangle_normals(p, corners)
+    # No side is longer than the surface.
+    extent = 0.0
+    if len(p):
+        extent = float(norm(np.ptp(bounds(p), axis=0)))
+    solid = norm(normals) > FLAT_TRIANGLE * extent**2
+    unsure = np.flatnonzero(~solid)
+    a, b, c = p.take(corners[unsure].T, axis=0)
+    longest = np.maximum.reduce([dot(side, side) for side in (b - a, c - a, c - b)])
+    solid[unsure] = norm(normals[unsure]) > FLAT_TRIANGLE * longest
     return solid, normals
 
 
@@ -224,8 +224,14 @@ def _with_two(triangles: Indices, nodes: Bools) -> Indices:
     """Return the triangles (m, 3) with two or three of some nodes (N,)."""
     if not nodes.any():
         return triangles[:0]
-    a, b, c = nodes.take(triangles.T)
+    a, b, c = nodes.take(triangles).T
     return np.asarray(triangles[(a & b) | (b & c) | (a & c)])
+
+
+def touching(triangles: Indices, nodes: Bools) -> Bools:
+    """Return which triangles (M,) have at least one of some nodes (N,)."""
+    a, b, c = nodes.take(triangles).T
+    return np.asarray(a | b | c)
 
 
 def _twins(points: Floats, nodes: Indices) -> Indices:

@@ -10,9 +10,9 @@ many faces meet there that they are smaller than the bin: then it becomes one no
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Generator, Sequence
 from dataclasses import dataclass, replace
-from functools import partial
+from functools import cached_property, partial
 from typing import Any, overload
 
 import numpy as np
@@ -20,7 +20,7 @@ import numpy as np
 from flowtex._util.array_types import Bools, Floats, Indices
 from flowtex._util.arrays import bounds, dot, first_places, norm, numbered
 from flowtex._util.forks import ProcessLock
-from flowtex._util.progress import track
+from flowtex._util.progress import finish
 from flowtex.errors import FieldError
 from flowtex.field import FlowField
 from flowtex.field.steps import Steps, map_steps
@@ -31,6 +31,7 @@ from flowtex.field.triangles.triangle_nodes import (
     known_means,
     once,
     sums_at,
+    touching,
     triangle_normals,
     uneven_nodes,
 )
@@ -82,7 +83,6 @@ class Clusters:
     border: Bools  #: Nodes on the border of the drawn triangles, (n,).
     normals: Floats  #: Normals, (n, 3).
     binned: Floats  #: Positions by which nodes are binned, (n, 3): without noise.
-    part: Indices  #: Connected part of each node, (n,), numbered in the order of their extents.
 
     @classmethod
     def of(cls, field: FlowField) -> Clusters:
@@ -100,7 +100,6 @@ class Clusters:
             )
         triangles = surface.triangles
         border = _border_nodes(surface)
-        part = _parts_by_extent(surface, field.points[0])
         crosses = surface.crosses
         if surface.flipped.any():
             triangles = triangles.copy()
@@ -122,8 +121,21 @@ class Clusters:
         number = np.arange(field.shape[1])
         cells = surface.drawn
         edge = _edges(face, places)
-        on_nodes = sides, places, face, edge, border, normals, binned, part
+        on_nodes = sides, places, face, edge, border, normals, binned
         return cls(field, field, triangles, cells, number, *on_nodes)
+
+    @cached_property
+    def part(self) -> Indices:
+        """Connected part of each node, (n,), numbered in the order of their extents."""
+        part = connected_nodes(self._joined, len(self.places))
+        return _by_extent(part[self.places], self.field.points[0], self.triangles)
+
+    @property
+    def _joined(self) -> Indices:
+        """Nodes at the corners of triangles, (M, 3), the same ones for all faces."""
+        if self.face.any():
+            return np.asarray(self.places.take(self.triangles))
+        return self.triangles
 
     def coarser(self, steps: int = 1) -> Clusters:
         """Return a coarser level, without triangles if all are smaller than the bins.
@@ -136,39 +148,36 @@ class Clusters:
         _, first, at = np.unique(bins, return_index=True, return_inverse=True)
         places = first[at]
         number = np.where(self.number >= 0, cluster[self.number], -1)
-        kept = cluster >= 0
-        sides = np.zeros(count)
-        border = np.zeros(count, dtype=bool)
-        part, edge, face = np.zeros((3, count), dtype=np.intp)
-        sides[cluster[kept]] = 2.0**steps * self.sides[kept]
-        border[cluster[kept]] = self.border[kept]
-        part[cluster[kept]] = self.part[kept]
-        edge[cluster[kept]] = edges[kept]
-        face[cluster[kept]] = faces[kept]
+        kept = np.flatnonzero(cluster >= 0)
+        # One of the nodes that each represents: those of a bin are alike.
+        member = np.empty(count, dtype=np.intp)
+        member[cluster[kept]] = kept
+        border = self.border[member]
         normals = sums_at(places[cluster[kept]], self.normals[kept], count)[places]
         field = _averaged(self.whole, number, places, corners)
         at_edge = np.bincount(places)[places] > 1
-        kept = _untangled(field.points[0], corners, normals, border | at_edge)
-        corners = corners[kept]
-        cells = self.cells[cells[kept]]
+        is_ahead = _untangled(field.points[0], corners, normals, border | at_edge)
+        corners = corners[is_ahead]
+        cells = self.cells[cells[is_ahead]]
         # A cell has the value of one of those in its place: means may be of none, such as a mark.
         flat = {name: self.field.scalars[name][:, :, cells] for name in field.on_cells}
         field = replace(field, triangles=corners, scalars={**field.scalars, **flat})
-        return Clusters(
+        level = Clusters(
             whole=self.whole,
             field=field,
             triangles=corners,
             cells=np.arange(len(corners)),
             number=number,
-            sides=sides,
+            sides=2.0**steps * self.sides[member],
             places=places,
-            face=face,
-            edge=edge,
+            face=faces[member],
+            edge=edges[member],
             border=border,
             normals=normals,
             binned=field.points[0],
-            part=part,
         )
+        level.__dict__["part"] = self.part[member]
+        return level
 
     def _binned(self, steps: int) -> tuple[Indices, Indices, Indices]:
         """Return face, edge, and bin of each node, (n,) each, for a coarser level."""
@@ -229,9 +238,8 @@ class Clusters:
         drawn = np.zeros(len(self.places), dtype=bool)
         drawn[self.triangles] = True
         key = 4 * boxes + 2 * drawn + self.border
-        for kind in (self.part, edge):
-            if kind.any():
-                key = numbered(key)[1] * (int(kind.max()) + 1) + kind
+        if edge.any():
+            key = numbered(key)[1] * (int(edge.max()) + 1) + edge
         cluster = numbered(key)[1]
         away = dot(self.normals, self.normals[first_places(cluster)][cluster]) < 0
         away &= _are_opposite(cluster, away, self.normals)[cluster]
@@ -242,34 +250,30 @@ class Clusters:
         """Return the sheet of each node, (n,): nodes of a cluster that are connected within it.
 
         Small ones are corners that a bin cuts off: they belong to a sheet beside them, or else to
-        the largest of their cluster.
+        the largest of their cluster in the same connected part.
         """
-        corners = self.triangles.T
-        if self.face.any():
-            corners = self.places.take(corners)
-        sheet = np.arange(len(cluster))
-        for k in range(3):
-            # The first sides connect nearly all.
-            linked = cluster.take(corners[k]) == cluster.take(corners[k - 1])
-            begins = sheet.take(corners[k][linked])
-            ends = sheet.take(corners[k - 1][linked])
-            other = begins != ends
-            count = int(sheet.max()) + 1
-            sheet = connected_items(begins[other], ends[other], count)[sheet]
-        size = np.bincount(sheet)
+        corners = self._joined
+        sheet, at = _connected_within(cluster, corners)
         within = cluster[first_places(sheet)]
+        if "part" not in self.__dict__:
+            # Sheets are far fewer than nodes.
+            part = _connected_sheets(at, len(within))[sheet][self.places]
+            self.__dict__["part"] = _by_extent(part, self.field.points[0], self.triangles)
+        parts = self.part[first_places(sheet)]
+        within = numbered(within * (int(parts.max()) + 1) + parts)[1]
+        size = np.bincount(sheet)
         order = np.argsort(size, kind="stable")
-        largest = np.zeros(int(cluster.max()) + 1, dtype=np.intp)
+        largest = np.zeros(int(within.max()) + 1, dtype=np.intp)
         largest[within[order]] = order  # the last value written stays
-        is_small = size < SHEET_SHARE * size[largest[within]]
-        target = np.where(is_small, largest[within], np.arange(len(size)))
-        small = is_small[sheet]
+        small = size < SHEET_SHARE * size[largest[within]]
+        target = np.where(small, largest[within], np.arange(len(size)))
+        is_small = small.take(at)
         pairs = []
         for k in range(3):
-            apart = small.take(corners[k]) != small.take(corners[k - 1])
-            pairs.append(np.stack([corners[k][apart], corners[k - 1][apart]]))
+            apart = np.flatnonzero(is_small[:, k] != is_small[:, k - 1])
+            pairs.append(np.stack([corners[apart, k], corners[apart, k - 1]]))
         sides = np.concatenate(pairs, axis=1)
-        node, beside = np.where(small[sides[0]], sides, sides[::-1])
+        node, beside = np.where(small[sheet[sides[0]]], sides, sides[::-1])
         joins = (self.border[node] == self.border[beside]) & (edge[node] == edge[beside])
         target[sheet[node[joins]]] = sheet[beside[joins]]
         return target[sheet]
@@ -321,10 +325,9 @@ class Levels(Sequence[Clusters]):
     def __init__(self, field: FlowField, nodes: int) -> None:
         self._lock = ProcessLock()
         self._made: dict[int, Clusters] = {}
-        for _ in track(self._make(field, nodes), FIRST_LEVELS, "Simplifying"):
-            pass
+        finish(self._make(field, nodes), FIRST_LEVELS, "Simplifying")
 
-    def _make(self, field: FlowField, nodes: int) -> Iterator[None]:
+    def _make(self, field: FlowField, nodes: int) -> Generator[None, None, None]:
         """Make the finest level, and the last two; yield before each of them."""
         yield
         finest = self._made[0] = Clusters.of(field)
@@ -441,12 +444,42 @@ def _border_nodes(surface: TriangleSurface) -> Bools:
     return border
 
 
-def _parts_by_extent(surface: TriangleSurface, points: Floats) -> Indices:
-    """Return the number of the connected part of each node, (N,), the smallest part first."""
-    part = connected_nodes(surface.joined, len(points))[surface.places]
+def _connected_within(cluster: Indices, corners: Indices) -> tuple[Indices, Indices]:
+    """Return numbers of connected nodes of the same cluster, (n,), and those of corners (M, 3)."""
+    at = cluster.take(corners)
+    is_linked = [at[:, k] == at[:, k - 1] for k in range(3)]
+    # The first sides connect nearly all.
+    first = np.flatnonzero(is_linked[0])
+    sheet = connected_items(corners[first, 0], corners[first, 2], len(cluster))
+    at = sheet.take(corners)
+    pairs = []
+    for k in (1, 2):
+        others = np.flatnonzero(is_linked[k] & (at[:, k] != at[:, k - 1]))
+        pairs.append(np.stack([at[others, k], at[others, k - 1]]))
+    begins, ends = np.concatenate(pairs, axis=1)
+    if not len(begins):
+        return sheet, at
+    merged = connected_items(begins, ends, int(sheet.max()) + 1)
+    return merged[sheet], merged.take(at)
+
+
+def _connected_sheets(corners: Indices, count: int) -> Indices:
+    """Return the number of the connected part of each sheet, (count,), at corners (M, 3)."""
+    first, second, third = corners.T
+    across = np.flatnonzero((first != second) | (first != third))
+    return connected_nodes(corners[across], count)
+
+
+def _by_extent(part: Indices, points: Floats, triangles: Indices) -> Indices:
+    """Return the number of the part of each node, (N,), the smallest part first.
+
+    Nodes that are not drawn belong to the part of the first triangle.
+    """
+    if not part.any():
+        return part
     is_used = np.zeros(len(points), dtype=bool)
-    is_used[surface.triangles] = True
-    part[~is_used] = part[surface.triangles[0, 0]]
+    is_used[triangles] = True
+    part = np.where(is_used, part, part[triangles[0, 0]])
     kinds, part = numbered(part)
     if len(kinds) == 1:
         return part
@@ -530,7 +563,7 @@ def _untangled(points: Floats, triangles: Indices, normals: Floats, border: Bool
         moved &= ~border
         if not moved.any():
             break
-        changed = np.flatnonzero(np.any([moved[triangles[:, k]] for k in range(3)], axis=0))
+        changed = np.flatnonzero(touching(triangles, moved))
         near = triangles[changed]
         around = incidence(near, len(points))
         # Of each triangle, the sum of the other two corners.

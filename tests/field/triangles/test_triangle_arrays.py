@@ -12,8 +12,10 @@ from strategies import property_test
 from triangle_meshes import random_plane, soup, sphere, surface_of
 
 from flowtex import FlowField
+from flowtex._util.progress import Stopped, stoppable
 from flowtex.errors import FieldError
-from flowtex.scene.fields import share_field
+from flowtex.field.triangles.triangle_arguments import READING_PARTS, triangle_nodes
+from flowtex.scene.fields import MOST_SAMPLED, share_field
 
 SQUARE = np.array([[0.0, 0], [1, 0], [1, 1], [0, 1]])
 HALVES = np.array([[0, 1, 2], [0, 2, 3]])
@@ -63,6 +65,30 @@ def test_nodes_that_are_not_known_blank_their_triangles() -> None:
     assert share_field(field) is share_field(FlowField.from_triangles(SQUARE, HALVES, hidden))
     other = FlowField.from_triangles(SQUARE, HALVES[::-1], velocity)
     assert share_field(other) is other
+
+
+def test_reading_triangles_can_be_shown_and_cancelled() -> None:
+    reading = triangle_nodes(SQUARE, HALVES, EVEN, None, None, {}, {}, on_globe=False)
+    assert len(list(reading)) == READING_PARTS
+    with pytest.raises(Stopped), stoppable(lambda: True):
+        FlowField.from_triangles(SQUARE, HALVES, EVEN)
+
+
+def test_large_fields_are_shared_only_where_every_value_is_equal() -> None:
+    points, triangles = sphere(4)
+    velocity = np.cross([0.0, 0.0, 1.0], points)
+    shared = share_field(FlowField.from_triangles(points, triangles, velocity))
+    # Fields are told apart by a sample first, so one of these nodes is not in it.
+    assert velocity.size > 3 * MOST_SAMPLED
+    for node in (0, 1, 2, 3):
+        changed = velocity.copy()
+        changed[node] *= 2
+        other = FlowField.from_triangles(points, triangles, changed)
+        assert share_field(other) is other
+        again = FlowField.from_triangles(points, triangles, changed)
+        assert share_field(again) is other
+    again = FlowField.from_triangles(points, triangles, velocity)
+    assert share_field(again) is shared
 
 
 def test_nodes_at_one_place_are_one_with_their_mean(rng: np.random.Generator) -> None:
