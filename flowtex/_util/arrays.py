@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from flowtex._util.array_types import Floats, Indices
+from flowtex._util.array_types import AnyArray, Floats, Indices
 
 #: Nodes of a block, so few that what is computed of them stays in a processor's cache.
 BLOCK_NODES = 16384
@@ -63,6 +63,12 @@ def bounds(points: Floats) -> Floats:
             parts.append(reduce(rows, axis=0).reshape(-1, count))
         ends.append(reduce(np.concatenate(parts), axis=0))
     return np.stack(ends)
+
+
+def is_nonzero(values: AnyArray) -> bool:
+    """Return whether some value is neither zero nor NaN; it is often found in the first block."""
+    flat = values.reshape(-1)
+    return any(np.nan_to_num(flat[block]).any() for block in row_blocks(len(flat), 1))
 
 
 def numbered(keys: Indices) -> tuple[Indices, Indices]:

@@ -9,6 +9,7 @@ from typing import Any, NamedTuple, TypeAlias
 import numpy as np
 
 from flowtex._util.array_types import AnyArray, Bools, Floats
+from flowtex._util.arrays import is_nonzero
 from flowtex._util.cache import ByteCache
 
 KEPT_BYTES = 256_000_000  #: Bytes of steps that stay in memory.
@@ -174,7 +175,7 @@ def moves(steps: Steps) -> bool:
         numbers = typical_steps(count)
     else:
         numbers = range(count)
-    return any(np.nan_to_num(steps[number]).any() for number in numbers)
+    return any(is_nonzero(steps[number]) for number in numbers)
 
 
 def first_moving(steps: Steps) -> int:
@@ -189,7 +190,7 @@ def first_moving(steps: Steps) -> int:
     if isinstance(steps, LazySteps):
         numbers = sorted({*range(min(count, MOST_AT_REST)), *typical_steps(count)})
     for number in numbers:
-        if np.nan_to_num(steps[number]).any():
+        if is_nonzero(steps[number]):
             return number
     return 0
 

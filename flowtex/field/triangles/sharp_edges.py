@@ -16,7 +16,6 @@ from flowtex._util.array_types import Bools, Floats, Indices
 from flowtex._util.arrays import bounds, dot, first_places, norm, numbered, row_blocks
 from flowtex.field.triangles.triangle_nodes import (
     neighbours,
-    nodal_sums,
     touching,
     triangle_normals,
     uneven_nodes,
@@ -160,23 +159,20 @@ def _in_noise(nodes: Indices, ends: Indices, count: int) -> Bools:
 
 
 def _turned_nodes(triangles: Indices, crosses: Floats, count: int) -> Bools:
-    """Return the nodes (count,) with a triangle that is turned far from their mean normal."""
-    area = norm(crosses)
-    units = crosses / np.maximum(area, np.finfo(float).tiny)[:, None]
-    around = np.bincount(triangles.ravel(), minlength=count)
-    # A triangle is turned by no more than all together.
-    apart: Bools = around - norm(nodal_sums(triangles, units, count)) > 1 - SHARP_HALF
-    if not apart.any():
-        return apart
-    near = np.flatnonzero(touching(triangles, apart))
-    corners = triangles[near]
-    normals = nodal_sums(corners, crosses[near], count)
-    # Divided by zero, a normal turns all of its triangles, as those of the other sign do.
-    normals /= np.maximum(norm(normals), np.finfo(float).tiny)[:, None]
+    """Return the nodes (count,) around which triangles may be turned as far as at a sharp edge.
+
+    Triangles that differ so far differ half as far from any third one around the node.
+    """
+    area = np.empty(len(triangles))
+    other_of = np.empty(count, dtype=np.intp)
+    for block in row_blocks(len(triangles), 1):
+        area[block] = norm(crosses[block])
+        other_of[triangles[block]] = np.arange(block.start, block.stop)[:, None]
     result = np.zeros(count, dtype=bool)
-    for block in row_blocks(len(near), 1):
-        nodes = corners[block]
-        away = np.einsum("mkc,mc->mk", normals.take(nodes, axis=0), crosses[near[block]])
-        turned = away <= SHARP_HALF * area[near[block], None]
-        result[nodes[turned]] = True
-    return np.asarray(result & apart)
+    for block in row_blocks(len(triangles), 1):
+        corners = triangles[block]
+        others = other_of.take(corners)
+        alike = np.einsum("mkc,mc->mk", crosses.take(others, axis=0), crosses[block])
+        turned = alike <= SHARP_HALF * area.take(others) * area[block, None]
+        result[corners[turned]] = True
+    return result

@@ -68,14 +68,10 @@ def triangle_nodes(
     p, masked_points = as_numbers("points", points)
     v, masked = as_numbers("velocity", first_step(velocity))
     corners = _corners_of(triangles)
-    mask = None
-    if valid is not None:
-        mask = np.nan_to_num(with_gaps("valid", valid)) != 0
+    mask = _mask_of(valid)
     arrays = _first_values("scalars", scalars)
     on_cells = _first_values("cell_scalars", cell_scalars)
-    count = 1
-    if v.ndim == 3 or isinstance(velocity, LazySteps):
-        count = len(velocity)
+    count = _step_count(velocity, v)
     faults = _faults(p, corners, v, count, times, mask, arrays)
     raise_faults(faults or cell_faults((len(corners),), count, on_cells, scalars))
     p = three_components(p)
@@ -107,6 +103,20 @@ def triangle_nodes(
     data |= _rows(cell_scalars, on_cells, len(corners), drawn)
     nodes = {"points": surface.points, "triangles": surface.triangles, "valid": surface.valid}
     return surface, {**nodes, "velocity": steps, "scalars": data}
+
+
+def _mask_of(valid: ArrayLike | None) -> Bools | None:
+    """Return the mask of nodes with data, which may have another shape than (N,)."""
+    if valid is None:
+        return None
+    return np.asarray(np.nan_to_num(with_gaps("valid", valid)) != 0)
+
+
+def _step_count(velocity: Any, values: Floats) -> int:
+    """Return the number of steps of a velocity, whose first or all ``values`` are known."""
+    if values.ndim == 3 or isinstance(velocity, LazySteps):
+        return len(velocity)
+    return 1
 
 
 def _corners_of(triangles: ArrayLike) -> AnyArray:

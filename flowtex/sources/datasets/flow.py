@@ -28,6 +28,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from flowtex._util.array_types import Bools, Floats
+from flowtex._util.arrays import is_nonzero
 from flowtex.errors import FieldError
 from flowtex.field import units
 from flowtex.field.options import FieldOptions
@@ -713,7 +714,7 @@ def _first_moving(flow: Flow) -> int:
     part = flow.values.components[0]
     axes = flow.values.axes
     for step in steps_to_examine(part.variable, axes):
-        if np.nan_to_num(part.sample(step, axes)).any():
+        if is_nonzero(part.sample(step, axes)):
             return step
     return 0
 

@@ -18,6 +18,7 @@ import numpy as np
 
 from flowtex._util.arguments import brief, near_names
 from flowtex._util.array_types import Floats
+from flowtex._util.arrays import is_nonzero
 from flowtex.errors import FieldError
 from flowtex.field import units
 from flowtex.field.dates import as_seconds
@@ -243,7 +244,7 @@ def _vectors(nodes: Placed, scale: float, components: Floats) -> Floats:
 
 def _note_rest(read: LazySteps, flow: Flow) -> None:
     searched = read[:MOST_SEARCHED]
-    first = next((n for n, step in enumerate(searched) if np.nan_to_num(step).any()), 0)
+    first = next((n for n, step in enumerate(searched) if is_nonzero(step)), 0)
     if first:
         times = np.asarray(flow.drawn.times)[first : first + 1]
         time = f"{labels.text(times)} {flow.drawn.time_unit}".strip()

@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from flowtex._util.array_types import Bools, Floats
+from flowtex._util.arrays import is_nonzero
 from flowtex.errors import FieldError
 from flowtex.field.derived.quantities import component_name
 from flowtex.field.field_arrays import NOTABLE_SHARE, GridArrays, TriangleArrays
@@ -256,7 +257,7 @@ def _stacked(
 
 def _note_rest(flow: Floats, moments: Any, record: Record) -> None:
     """Record the first step of a velocity (T, ...) that moves, if the first one is at rest."""
-    moving = [n for n, step in enumerate(flow) if np.nan_to_num(step).any()]
+    moving = [n for n, step in enumerate(flow) if is_nonzero(step)]
     if moving and moving[0]:
         when = f"step {moving[0]}" if moments is None else f"time {moments[moving[0]]:g}"
         text = f"the velocity is zero everywhere at the first step; it is not from {when} on"

@@ -16,6 +16,7 @@ from typing import Any
 
 import numpy as np
 
+from flowtex._util.arrays import is_nonzero
 from flowtex.errors import FieldError
 from flowtex.field.dates import ENDS
 from flowtex.field.field_arrays import GridArrays, Reading, ReadingStep, TriangleArrays
@@ -124,7 +125,7 @@ def wall_stress(steps: Iterator[TimeStep], record: Record) -> str | None:
             return None
         stresses, others = _stresses_and_others(grid)
         for array in stresses:
-            if others and np.nan_to_num(values_of(grid, array)).any():
+            if others and is_nonzero(values_of(grid, array)):
                 name = others[0].name
                 text = f'"{name}" is zero on this wall, so "{array.name}" is drawn'
                 other = Remedy("vectors", name, "to draw the other one,")
@@ -138,7 +139,7 @@ def _may_be_wall(grid: Any) -> bool:
     stresses, others = _stresses_and_others(grid)
     if (stresses or others) and grid.max_cell_dimensionality != 2:
         return False
-    return not any(np.nan_to_num(values_of(grid, array)).any() for array in others)
+    return not any(is_nonzero(values_of(grid, array)) for array in others)
 
 
 def _stresses_and_others(grid: Any) -> tuple[list[MeshArray], list[MeshArray]]:
