@@ -29,6 +29,7 @@ import numpy as np
 
 from flowtex._util import __version__
 from flowtex._util.arguments import checked_target
+from flowtex._util.array_types import AnyArray
 from flowtex._util.progress import track
 from flowtex._util.whole_file import whole_file
 from flowtex.errors import FieldError, notify
@@ -230,8 +231,8 @@ def page_text(views: Sequence[WebView], *, store: str | None = None, **options: 
     return "".join(page_pieces(contents_of(views, store, **options)))
 
 
-def _with_tiles(scene: ClientData) -> ClientData:
-    """Return a scene with as many finer levels as fit into a page."""
+def _with_tiles(scene: ClientData, packed: PackedParts) -> ClientData:
+    """Return a scene with as many finer levels as fit into a page, and pack its coarsest one."""
     pyramid = scene.pyramid
     if pyramid is None:
         return scene
@@ -241,7 +242,7 @@ def _with_tiles(scene: ClientData) -> ClientData:
     else:
         room = float(min(TILE_BYTES, SLICE_BYTES))
     coarse = replace(scene, finest=finest)
-    size = _text_size(coarse.surface()) + scene.steps * _text_size(scene.step(0))
+    size = packed.size(coarse.surface()) + scene.steps * packed.size(scene.step(0))
     size_by_node = size / math.prod(pyramid.shape(pyramid.depth))
     while finest:
         room -= size_by_node * math.prod(pyramid.shape(finest - 1))
@@ -253,13 +254,31 @@ def _with_tiles(scene: ClientData) -> ClientData:
     return replace(scene, pyramid=pyramid, finest=finest)
 
 
-def _text_size(parts: Parts) -> int:
-    """Return the number of characters of parts in a page."""
-    size = 0
-    for part in parts.values():
-        _, text = part_text(part)
-        size += len(text)
-    return size
+class PackedParts:
+    """Parts of a page that are packed once, although their size is needed before."""
+
+    def __init__(self) -> None:
+        self._packed: dict[str, tuple[Header, str]] = {}
+
+    def size(self, parts: Parts) -> int:
+        """Return the number of characters of parts in a page."""
+        size = 0
+        for name, part in parts.items():
+            size += len(self.keep(part_info(name, part)["digest"], part)[1])
+        return size
+
+    def keep(self, digest: str, part: AnyArray) -> tuple[Header, str]:
+        """Return how a part with a digest is packed, and its text, and keep both until taken."""
+        if digest not in self._packed:
+            self._packed[digest] = part_text(part)
+        return self._packed[digest]
+
+    def take(self, digest: str, part: AnyArray) -> tuple[Header, str]:
+        """Return what was kept of a part, or pack it."""
+        kept = self._packed.pop(digest, None)
+        if kept is None:
+            return part_text(part)
+        return kept
 
 
 @dataclass(frozen=True)
@@ -302,13 +321,14 @@ def contents_of(
         source = source_of(store)
     headers = []
     scenes = []
+    packed = PackedParts()
     for view in views:
         if store is None:
             stored = None
         else:
             stored = _stored(view)
         if stored is None:
-            scene = _with_tiles(view.page_data())
+            scene = _with_tiles(view.page_data(), packed)
         else:
             scene = linked_data(view, stored)
         header = scene.header(view.scene.settings, time=time, **shown)
@@ -321,7 +341,7 @@ def contents_of(
             header["differs"] = list(views[1].own_settings)
         headers.append(header)
         scenes.append(scene)
-    parts = _packed(scenes, time, is_linked=store is not None)
+    parts = _packed(scenes, time, packed, is_linked=store is not None)
     return Contents(views[0], headers, parts, scenes[0].steps, time, source, picture)
 
 
@@ -472,7 +492,7 @@ def json_text(value: object) -> str:
 
 
 def _packed(
-    scenes: Sequence[ClientData], time: float | None, *, is_linked: bool
+    scenes: Sequence[ClientData], time: float | None, packed: PackedParts, *, is_linked: bool
 ) -> Iterator[tuple[int, Header, str]]:
     """Yield each part of a page: number of its scene, header entry, and text if it is new."""
     written: dict[str, Header] = {}
@@ -494,7 +514,7 @@ def _packed(
             info = part_info(name, array)
             text = ""
             if info["digest"] not in written:
-                written[info["digest"]], text = part_text(array)
+                written[info["digest"]], text = packed.take(info["digest"], array)
             yield n, info | written[info["digest"]], text
 
 

@@ -20,6 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flowtex._util.array_types import Bools, Floats, Floats32, Indices
+from flowtex._util.arrays import bounds
 from flowtex.field import FlowField
 from flowtex.field.triangles.triangle_nodes import corner_ends
 from flowtex.textures.texture_set import TextureSet
@@ -444,8 +445,7 @@ def _cut(points: Floats) -> tuple[int, float]:
     """Return axis and value of a cut, with points on both sides unless all coincide."""
     if not len(points):
         return 0, 0.0
-    low = points.min(axis=0)
-    high = points.max(axis=0)
+    low, high = bounds(points)
     axis = int(np.argmax((high - low)[:3]))
     if high[3] > low[3]:
         part = np.unique(points[:, 3], return_inverse=True)[1]
