@@ -65,7 +65,10 @@ class Feed:
         self._send = send
         self._lock = ProcessLock()  # the source, and the order of messages
         self._building = ProcessLock()  # one scene is made after the other
-        self._order = 0
+        # Not held while anything is sent: a host may change the scene while it holds a lock of its
+        # own, which sending takes as well.
+        self._counting = ProcessLock()
+        self._order = 0  # of the latest change
         self._live = self._closed = False
         #: Requests that a client waits for.
         self._requests: set[str] = set()
@@ -179,7 +182,7 @@ class Feed:
         if affects == "appearance":
             self._build(self._recolour)
             return
-        with self._lock:
+        with self._counting:
             self._order += 1
             order = self._order
             self.settled.clear()

@@ -601,3 +601,39 @@ def test_the_point_follows_the_time_and_ends_with_its_field() -> None:
     widget.field = flowtex.FlowField.from_arrays(points, steps[0])
     assert widget.point is None
     widget.close()
+
+
+@pytest.mark.threads
+def test_a_setting_from_the_browser_may_come_while_a_scene_is_announced(make: Make) -> None:
+    widget = make(gyre(times=2))
+    (sent,) = widget._feeds
+    sent.settled.wait(PATIENCE_S)
+    announcing, changing = threading.Event(), threading.Event()
+    lock, announce = widget._state_lock, sent._announce
+
+    class Told:
+        """The lock of the widget's state, which tells that it is held."""
+
+        def __enter__(self) -> None:
+            lock.__enter__()
+            changing.set()
+
+        def __exit__(self, *_: Any) -> None:
+            lock.__exit__(None, None, None)
+
+    def announced(header: Any) -> None:
+        sent._announce = announce
+        announcing.set()
+        assert changing.wait(PATIENCE_S)
+        announce(header)
+
+    sent._announce = announced
+    widget.parameter = "time"
+    assert announcing.wait(PATIENCE_S)
+    widget._state_lock = Told()  # type: ignore[assignment]
+    browser = threading.Thread(target=widget.set_state, args=({"lines": "pathlines"},), daemon=True)
+    browser.start()
+    browser.join(PATIENCE_S)
+    assert not browser.is_alive()
+    assert sent.settled.wait(PATIENCE_S)
+    assert sent.source.scene.textures is widget.scene.textures
