@@ -1,7 +1,7 @@
 #!/bin/sh
 # check.sh BIN all|fast|changed|none [PYTEST ARGUMENT...]: style, format, types, the browser client, and tests:
 # all, the fast ones, the fast ones of changed modules, or none.
-# All checks run even if earlier ones fail. Long checks run in parallel with the tests, and are
+# All checks run even if earlier ones fail. Long checks run in parallel with the others, and are
 # reported after them.
 set -u
 here=$(dirname "$0")
@@ -63,16 +63,16 @@ ended() {
     cat "$logs/$3"
 }
 
-check style ruff check
-check format ruff format --check
-check imports lint-imports --no-cache
-check "density of the code" python "$here/density.py"
 sh "$here/client.sh" "$bin" ready || failed="$failed, tools of the browser client"
 types >"$logs/types" 2>&1 &
 types=$!
 sh "$here/client.sh" "$bin" >"$logs/client" 2>&1 &
 client=$!
 aside="$types $client"
+check style ruff check
+check format ruff format --check
+check imports lint-imports --no-cache
+check "density of the code" python "$here/density.py"
 
 fast="not browser and not slow"
 case $which in
