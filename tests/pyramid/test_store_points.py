@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pickle
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -27,11 +27,21 @@ zarr = pytest.importorskip("zarr")
 ROUNDING = 2.0**-11
 
 
-@pytest.fixture(autouse=True)
-def _small_roots(monkeypatch: pytest.MonkeyPatch, small_tiles: None) -> None:
-    monkeypatch.setattr("flowtex.textures.tiles.grid_levels.ROOT_NODES", 300)
-    for module in ("stored", "source"):
-        monkeypatch.setattr(f"flowtex.pyramid.{module}.WHOLE_NODES", 2000)
+@pytest.fixture(scope="module", autouse=True)
+def _small_roots(small_tiles: None) -> Iterator[None]:
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("flowtex.textures.tiles.grid_levels.ROOT_NODES", 300)
+        for module in ("stored", "source"):
+            patch.setattr(f"flowtex.pyramid.{module}.WHOLE_NODES", 2000)
+        yield
+
+
+@pytest.fixture(scope="module")
+def striped(_small_roots: None, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A store of :func:`stripes`, which is built once."""
+    place = tmp_path_factory.mktemp("striped") / "flow.zarr"
+    build(stripes(), place, progress=False)
+    return place
 
 
 def stripes() -> FlowField:
@@ -140,10 +150,9 @@ def test_points_of_a_store_are_those_of_its_field(name: str, tmp_path: Path) -> 
     assert store.at(*places(field, 1)[0]).time == field.times[0]
 
 
-def test_an_index_and_a_copy_of_a_store_have_the_finest_values(tmp_path: Path) -> None:
+def test_an_index_and_a_copy_of_a_store_have_the_finest_values(striped: Path) -> None:
     field = stripes()
-    build(field, tmp_path / "flow.zarr", progress=False)
-    store: Any = open_store(tmp_path / "flow.zarr")
+    store: Any = open_store(striped)
     place = (50.3, 20.2)
     wanted = field.at(*place, time=3.0)
     index = locate(store, place)
@@ -156,11 +165,8 @@ def test_an_index_and_a_copy_of_a_store_have_the_finest_values(tmp_path: Path) -
     assert store.at(-50.0, 20.0) is None
 
 
-def test_only_the_tiles_of_a_place_are_read(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    build(stripes(), tmp_path / "flow.zarr", progress=False)
-    store: Any = open_store(tmp_path / "flow.zarr")
+def test_only_the_tiles_of_a_place_are_read(striped: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    store: Any = open_store(striped)
     counts = []
     original = flowtex.pyramid.levels.Levels.nodes
 
@@ -175,10 +181,9 @@ def test_only_the_tiles_of_a_place_are_read(
     assert size < 300
 
 
-def test_what_is_derived_needs_all_nodes(tmp_path: Path) -> None:
+def test_what_is_derived_needs_all_nodes(striped: Path, tmp_path: Path) -> None:
     field = stripes()
-    build(field, tmp_path / "flow.zarr", progress=False)
-    store: Any = open_store(tmp_path / "flow.zarr")
+    store: Any = open_store(striped)
     for name, horizon in (("vorticity", None), ("ftle", 1.0)):
         with pytest.raises(FieldError, match=rf"{name} needs all nodes.*with_derived\(\"{name}"):
             store.derive(name, horizon=horizon)
