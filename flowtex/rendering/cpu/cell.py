@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from flowtex._util.array_types import Floats, Indices
-from flowtex._util.arrays import smoothstep
+from flowtex._util.arrays import norm, smoothstep
 from flowtex.rendering.cpu.path import Places, Slices, TrianglePlaces, TriangleSlices
 from flowtex.rendering.shaders import const
 from flowtex.rendering.uniforms import Values
@@ -37,9 +37,9 @@ class CellPath:
         speed = np.maximum(speed, const.LEAST_SPEED)
         if isinstance(coordinate, TrianglePlaces):
             rate = np.minimum(rate, const.SLIVER_CELLS * speed * _sliver(coordinate))
-        agreed = np.linalg.norm(coefficients[:, :3, 0], axis=1) / speed
+        agreed = norm(coefficients[:, :3, 0]) / speed
         # Also of all nodes alike: paths part between two that agree beside a third that does not.
-        alike = np.linalg.norm(together, axis=1) / np.maximum(alone, const.LEAST_SPEED)
+        alike = norm(together) / np.maximum(alone, const.LEAST_SPEED)
         agreed = np.minimum(agreed, alike)
         edge = smoothstep(const.ALONG_PLANE, const.OFF_PLANE, sine_off)
         cells = reach * rate / speed / (1 + (const.EDGE_CELLS - 1) * edge)
@@ -95,7 +95,7 @@ def _sliver(places: TrianglePlaces) -> Floats:
     one = places.by[:, 0]
     two = places.by[:, 1]
     # Heights, over the area, are as the sides.
-    sides = np.linalg.norm(np.stack([one, two, one + two]), axis=-1)
+    sides = norm(np.stack([one, two, one + two]))
     return np.asarray(sides.prod(axis=0) / np.square(sides.max(axis=0)))
 
 
@@ -127,7 +127,7 @@ def _square(slices: Slices, coordinate: Floats, values: Values) -> tuple[Floats,
         turn = slices.layer(position, values["u_rateLayer"], finest)
         by = turn[:, :2] * (turn[:, 3:] / (tangent[:, 3:] * values["u_cell"]))
         moved = tangent[:, :3] * turn[:, 3:]
-        return moved, by, (np.linalg.norm(moved, axis=1), np.linalg.norm(by, axis=1)), 0 * one
+        return moved, by, (norm(moved), norm(by)), 0 * one
 
     return factors, map(node, ((0, 0), (1, 0), (0, 1), (1, 1)))
 
@@ -148,13 +148,13 @@ def _triangle(
         turn = slices.at_node(number, values["u_rateLayer"])
         moved = tangent[:, :3] * turn[:, 3:]
         by = np.einsum("nkc,nc->nk", places.by, moved)
-        lengths = np.linalg.norm(moved, axis=1), np.sqrt((by**2).sum(axis=1) + by[:, 0] * by[:, 1])
+        lengths = norm(moved), np.sqrt((by**2).sum(axis=1) + by[:, 0] * by[:, 1])
         height = np.einsum("nc,nc->n", normal, moved)
         off = np.abs(height) / np.maximum(lengths[0], const.LEAST_SPEED)
         off = np.maximum(off, turn[:, 2])
         for side in range(values["u_sides"]):
             slope = slices.at_node(number, 1 + side * len(values["u_lags"]))[:, :3]
-            length = np.maximum(np.linalg.norm(slope, axis=1), const.LEAST_SPEED)
+            length = np.maximum(norm(slope), const.LEAST_SPEED)
             off = np.maximum(off, np.abs(np.einsum("nc,nc->n", normal, slope)) / length)
         return moved - height[:, None] * normal, by, lengths, off
 

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from flowtex._util.array_types import Floats, Indices
-from flowtex._util.arrays import smoothstep
+from flowtex._util.arrays import norm, smoothstep
 from flowtex.field.triangles.triangle_nodes import normals_at_corners
 from flowtex.rendering.cpu.path import Places, TrianglePlaces
 from flowtex.rendering.cpu.raster import Coverage
@@ -110,7 +110,7 @@ class Fragments:
         change = np.maximum(np.hypot(by_x, by_y), const.LEAST_SQUARE)
         # The square of how a curved surface faces the eye grows evenly from its outline.
         shown = smoothstep(const.RIM_HIDDEN, const.RIM_SHOWN, 0.5 * aslant / change)
-        cosine = aslant / np.maximum(np.linalg.norm(normal.value, axis=-1), const.LEAST_SQUARE)
+        cosine = aslant / np.maximum(norm(normal.value), const.LEAST_SQUARE)
         return np.maximum(shown, smoothstep(const.RIM_ASLANT, const.RIM_FACING, cosine))
 
     def __len__(self) -> int:

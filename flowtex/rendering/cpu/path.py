@@ -8,6 +8,7 @@ from typing import TypeAlias
 import numpy as np
 
 from flowtex._util.array_types import Floats, Indices
+from flowtex._util.arrays import norm
 from flowtex.rendering.cpu.mipmaps import Mips
 
 
@@ -132,12 +133,12 @@ class Path:
     def speed(self, lag: Floats) -> Floats:
         """Speed of the particles at that lag, (N,): the length of d(lag * slope) / d lag."""
         along = self.before + self._bends * (2.0 * lag - self._from)[:, None]
-        return np.asarray(np.linalg.norm(along, axis=-1))
+        return np.asarray(norm(along))
 
     @property
     def bend(self) -> Floats:
         """Change of the slopes with lag, (N,), where the particles are."""
-        return np.asarray(np.linalg.norm(self._bends, axis=-1))
+        return np.asarray(norm(self._bends))
 
     @property
     def _bends(self) -> Floats:

@@ -9,6 +9,7 @@ from typing import Protocol
 import numpy as np
 
 from flowtex._util.array_types import Floats
+from flowtex._util.arrays import norm
 from flowtex.rendering.cpu.cell import CellPath, unit
 from flowtex.rendering.cpu.fragments import Fragments
 from flowtex.rendering.cpu.path import AxisSlices, Path, Places, Slices, TrianglePlaces, moved
@@ -117,7 +118,7 @@ class Summing:
         values = self._values
         lookup = self._lookup
         base = self._slices.layer(coordinate, 0, level)
-        speed = np.linalg.norm(base[:, :3], axis=-1)
+        speed = norm(base[:, :3])
         certainty = self.certainty(coordinate, level)
         grains = lookup.face(base[:, :3])
         lookup.move(speed, np.maximum(self._shown(coordinate, level), 0.0))
@@ -169,7 +170,7 @@ class Summing:
 
         It is less where the flow only crosses the surface, too.
         """
-        speed = np.linalg.norm(self._slices.layer(coordinate, 0, level)[:, :3], axis=-1)
+        speed = norm(self._slices.layer(coordinate, 0, level)[:, :3])
         share = (speed >= const.LEAST_SPEED) * (const.FADED + (1 - const.FADED) * certainty)
         shown = self._shown(coordinate, level)
         share *= np.clip(1.0 + shown, 0.0, 1.0)
@@ -197,7 +198,7 @@ class Summing:
 
     def sides(self, coordinate: Places, level: Floats, base: Floats) -> Iterator[Side]:
         """Sides of the paths of N fragments, whose layer 0 is ``base``, (N, 4)."""
-        speed = np.linalg.norm(base[:, :3], axis=-1)
+        speed = norm(base[:, :3])
         if self._by_lag:
             scale = np.ones(len(base))
             spacing = self._lookup.spacing * speed
