@@ -365,7 +365,10 @@ def _nearest_lonlat(
             pass
     # In triangles of great circles.
     corners = surface.points.reshape(-1, 3)[nodes]
-    weights = np.linalg.solve(corners.T, target)
+    try:
+        weights = np.linalg.solve(corners.T, target)
+    except np.linalg.LinAlgError:  # two corners are at one point, as at a pole
+        weights = np.linalg.lstsq(corners.T, target)[0]
     weights /= weights.sum()
     sag = np.ptp(corners, axis=0).max() / EARTH_RADIUS / 4
     if weights.min() < -max(tolerance, sag):

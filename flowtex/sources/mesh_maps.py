@@ -13,6 +13,7 @@ from flowtex.field.grids.grid_nodes import find_closure
 from flowtex.sources.datasets.coordinates import Places
 from flowtex.sources.map_poles import MeshPlaces, around_pole, open_pole, torn_poles
 from flowtex.sources.maps import (
+    INSIDE,
     LATITUDES,
     ROUNDED,
     data_gaps,
@@ -23,6 +24,8 @@ from flowtex.sources.maps import (
 
 #: Greatest width of a tear, as a share of the side across it, where it may begin in a triangle.
 NARROW = 0.6
+OBLIQUE = "+proj=ob_tran"  #: What the definitions of maps have whose poles lie elsewhere.
+HALF_TURN = 180.0  #: In degrees.
 #: Halvings of a side in the search for the latitude where a map ends.
 HALVINGS = 40
 
@@ -95,12 +98,15 @@ def mesh_on_map(
 
 
 def torn_grid(places: Places, name: str | None) -> MeshMap | None:
-    """Put a curvilinear grid on a flat map as triangles, if the map cuts its cells.
+    """Put a grid on a flat map as triangles, if the map cuts its cells.
 
-    It is ``None`` where the cells of the grid remain whole, or lie on lines of the map.
+    It is ``None`` where the cells of the grid remain whole. Of a grid on lines most maps leave
+    whole cells in parts; oblique ones have tears across both rows and columns.
     """
     projection = projection_of(places, name)
-    if projection.is_globe or places.is_line or min(places.a.shape) < 2:
+    if projection.is_globe or min(places.a.shape) < 2:
+        return None
+    if places.is_line and OBLIQUE not in projection.name:
         return None
     columns = np.arange(places.a.shape[1])
     if find_closure(np.swapaxes(places.positions, 0, 1))[1] is not None:
@@ -240,6 +246,8 @@ def _along_tears(
     one, other = np.moveaxis(np.stack([places.lon, places.lat], axis=-1)[pairs], 1, 0)
     torn, *shares = tears(projection, one, other, straight=True)
     new = [places.append_between(pairs[torn], share) for share in shares]
+    for part, end in zip(new, pairs[torn].T, strict=True):
+        _move_to_side(places, part, end)
     # A great circle between two places on the last parallel leads beyond it.
     places.lat = np.clip(places.lat, *LATITUDES.get(projection.family, (-90.0, 90.0)))
     tear = np.full(triangles.shape, -1)
@@ -255,6 +263,16 @@ def _along_tears(
     lost = is_odd & ~is_narrow
     cut, parts = _cut(triangles[~lost], tear[~lost], pairs[torn], np.stack(new))
     return (cut, members[~lost][parts]), int(lost.sum())
+
+
+def _move_to_side(places: MeshPlaces, numbers: Indices, ends: Indices) -> None:
+    """Move places on the edge of a map to its eastern side where the end beside them lies there.
+
+    A place on the edge lies on the western side.
+    """
+    edge = places.lon[numbers] - places.west < INSIDE
+    is_east = edge & (places.lon[ends] - places.west > HALF_TURN)
+    places.lon[numbers[is_east]] = places.west + 2 * HALF_TURN - INSIDE
 
 
 def _sides(triangles: Indices) -> Indices:

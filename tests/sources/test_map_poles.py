@@ -6,12 +6,14 @@ import numpy as np
 import pytest
 import xarray as xr
 from earth_data import RATE, components, turning
+from earth_data import winds as winds_on_lines
 from map_places import drawn_at, turned_frame, winds
 from scipy.spatial import ConvexHull
 
 from flowtex import FlowField
 from flowtex._util.array_types import Floats
 from flowtex.field.earth.projection import EARTH_RADIUS, GLOBE, Projection
+from flowtex.sources.models.healpix import healpix_centres
 from flowtex.sources.reproject import reprojected
 
 MAPS = [
@@ -144,3 +146,53 @@ def test_a_field_goes_from_one_map_to_another_with_its_poles() -> None:
     # Half-way along the diagonal of a cell of 4 degrees, linear vectors are shorter by the cosine.
     shorter = 1.0 - np.cos(np.radians(2.0 * np.sqrt(2.0)))
     assert speed[globe.valid] == pytest.approx(wanted[globe.valid], abs=1.05 * shorter * RATE)
+
+
+def healpix(nside: int, order: str) -> xr.Dataset:
+    """The rotation at the middles of cells, some of which lie on the meridian of 180 degrees."""
+    u, v = components(*healpix_centres(np.arange(12 * nside**2), nside, nested=order != "ring"))
+    crs = {"grid_mapping_name": "healpix", "healpix_nside": nside, "healpix_order": order}
+    named = {"units": "m s-1", "grid_mapping": "crs"}
+    return xr.Dataset(
+        {
+            "ua": ("cell", u, {"standard_name": "eastward_wind", **named}),
+            "va": ("cell", v, {"standard_name": "northward_wind", **named}),
+            "crs": ((), 0, crs),
+        }
+    )
+
+
+@pytest.mark.filterwarnings("ignore::flowtex.sources.notices.DatasetNotice")
+@pytest.mark.parametrize(("order", "name"), [("ring", "robinson"), ("nested", "mercator")])
+def test_nodes_on_the_edge_of_a_map_leave_no_gap_beside_it(order: str, name: str) -> None:
+    field = FlowField.from_xarray(healpix(8, order), projection=name)
+    for lon in (174.5, 179.0, 179.99, -179.99, -179.0, -174.5):
+        for lat in (-51.7, -0.4, 0.3, 30.2, 80.0):
+            found = field.at(lon, lat)
+            assert found is not None, (lon, lat)
+            u, v = components(np.array(lon), np.array(lat))
+            assert (found.eastward, found.northward) == pytest.approx((u, v), abs=0.05)
+
+
+@pytest.mark.parametrize("projection", ["eqc", "moll", "eqearth"])
+def test_oblique_maps_show_all_of_a_grid_on_lines(projection: str) -> None:
+    name = f"+proj=ob_tran +o_proj={projection} +o_lat_p=30 +o_lon_p=20 +lon_0=50"
+    lines = winds_on_lines(np.arange(-180.0, 180.0, 6.0), np.arange(-90.0, 90.1, 6.0))
+    field = FlowField.from_xarray(lines, projection=name)
+    shown = field.projection
+    assert shown is not None
+    rng = np.random.default_rng(1)
+    lon = rng.uniform(-180.0, 180.0, 600)
+    lat = np.degrees(np.arcsin(rng.uniform(-1.0, 1.0, 600)))
+    lat[:2] = -90.0, 90.0
+    places = shown.positions(lon, lat)[:, :2]
+    # Beside its own poles, which are no nodes, an oblique map does not show parts of cells.
+    away = np.abs(places[:, 1]) < 0.9 * np.abs(places[:, 1]).max()
+    assert away[:2].all()
+    # A thousandth of the map inside its outline, which is bent between the nodes at it.
+    assert drawn_at(field, 0.999 * places[away])[0].all()
+    for a, b in zip(lon[away][:100], lat[away][:100], strict=True):
+        found = field.at(a, b)
+        assert found is not None, (a, b)
+        speed = np.hypot(*components(np.array(a), np.array(b)))
+        assert found.speed == pytest.approx(speed, abs=0.08)

@@ -102,9 +102,10 @@ def test_a_map_shows_the_data_and_nothing_else(name: str, region: str) -> None:
     found, vectors = drawn_at(field, places)
     assert not (found & (depth < -0.05 * cell)).any(), "nothing is drawn outside the data"
     missing = ~found & (depth > cell)
-    # Where a tear runs across both lines of a grid on lines, some half cells are left out.
-    across_lines = region in LINES and "ob_tran" in name
-    assert missing.mean() <= (0.04 if across_lines else 0.0), (lon[missing], lat[missing])
+    # Beside its own poles, which are no nodes, an oblique map leaves parts of cells out.
+    if region in LINES and "ob_tran" in name:
+        missing &= np.abs(places[:, 1]) < 0.9 * np.abs(places[:, 1]).max()
+    assert not missing.any(), (lon[missing], lat[missing])
     # Where a particle goes in a short time.
     east, north = components(lon, lat)
     step = 1e-3 / np.hypot(east, north)
