@@ -27,6 +27,7 @@ from flowtex.sources.inspection.foam_files import ENDINGS, case_of
 from flowtex.sources.inspection.inspect_file import inspect_file
 from flowtex.sources.inspection.other_programs import advice_of
 from flowtex.sources.meshes import meshio_files, parts, plot3d, separate, series
+from flowtex.sources.meshes.amr import amr_blocks
 from flowtex.sources.meshes.read_meshes import choose, read_meshes
 from flowtex.sources.meshes.vectors import MeshArray, candidates, catalogue, hidden_nodes, values_of
 from flowtex.sources.notices import Record
@@ -141,6 +142,11 @@ class _TimedReader:
         """Read the mesh or the blocks at the active time."""
         if self.time_values:
             self._reader.reader.UpdateTimeStep(self.active_time_value)
+        else:
+            self._reader.reader.Update()
+        read = self._reader.reader.GetOutputDataObject(0)
+        if read is not None and read.IsA("vtkOverlappingAMR"):  # which PyVista does not know
+            return amr_blocks(read)
         return self._reader.read()
 
 
