@@ -14,6 +14,7 @@ from flowtex._util import __version__ as __version__
 from flowtex._util import command as _command  # noqa: F401  # before all that is slow to load
 from flowtex.errors import FieldError
 from flowtex.field import FlowField
+from flowtex.field.readers import register_readers
 from flowtex.settings import Settings
 from flowtex.trace.slices import TraceSlices
 from flowtex.trace.trace import trace
@@ -80,6 +81,10 @@ _LAZY = {
 }
 #: Those that need OpenGL: it is tried while they are imported.
 _DRAWS = ("axes", "dynamic_map", "movie", "render", "show")
+
+
+# The constructors of FlowField find the readers above it here.
+register_readers("flowtex.sources.read_fields")
 
 
 def __getattr__(name: str) -> Any:

@@ -214,7 +214,7 @@ def _array_table(summary: FileSummary) -> Table:
 
 def _field_table(field: FlowField, *, has_reading: bool = False) -> Table:
     from flowtex.field.dates import expected_times
-    from flowtex.field.derived.quantities import DERIVED
+    from flowtex.field.derived.kinds import DERIVED
     from flowtex.textures.tiles.shared import has_pyramid
     from flowtex.trace.store import changing_share, chosen_lines
 

@@ -1,64 +1,46 @@
-"""The flow on a surface: nodes, velocity, times, and which nodes carry data.
+"""The flow on a surface: the class that users make, and its constructors.
 
 Data are checked when a :class:`FlowField` is made, with all faults in one error; the rest of the
-package relies on it.
+package relies on it. Meshes, files and datasets are read by the readers of
+:mod:`flowtex.field.readers`.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
-from functools import cached_property
-from itertools import compress
-from typing import Any, SupportsIndex
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from flowtex._util.arguments import checked_count, is_number
-from flowtex._util.array_types import Bools, Floats, Indices
 from flowtex._util.progress import finish
-from flowtex.errors import FieldError, notify
-from flowtex.field.constructors import FieldConstructors
+from flowtex.errors import notify
+from flowtex.field.checked_nodes import CheckedNodes
+from flowtex.field.derived.kinds import LONG_NAMES
+from flowtex.field.derived.quantities import derive, derived_unit
 from flowtex.field.earth.projection import Projection
-from flowtex.field.field_arrays import NOTABLE_SHARE, NOTHING, FieldArrays, Reading, SectionAxes
-from flowtex.field.finer import FINEST
-from flowtex.field.folds import with_faces
-from flowtex.field.formula.formula import Formula
+from flowtex.field.field_arrays import GridArrays, SourceArrays, TriangleArrays
+from flowtex.field.field_data import FieldData
+from flowtex.field.folds import TEXTS, faces_of
 from flowtex.field.grids.grid_nodes import grid_nodes
-from flowtex.field.grids.grid_surface import GridSurface
-from flowtex.field.node_surface import IndexVelocity
+from flowtex.field.options import OF_BOTH, OF_DATASETS, OF_MESHES, FieldOptions, accepts_options
 from flowtex.field.plain_arrays import plain_grid
-from flowtex.field.quantities import FieldQuantities
+from flowtex.field.quantities import PointValues, values_near, with_speed_on_earth
+from flowtex.field.readers import reader
 from flowtex.field.scalars import Scalars
-from flowtex.field.steps import (
-    LazySteps,
-    Steps,
-    first_moving,
-    map_steps,
-    moves,
-    scaled_steps,
-    typical_steps,
-)
+from flowtex.field.steps import LazySteps, Steps, moves, scaled_steps
 from flowtex.field.triangles.triangle_arguments import READING_PARTS, triangle_nodes
-from flowtex.field.triangles.triangle_surface import Surface, TriangleSurface
-from flowtex.field.validation import ALL_AT_REST, prepared
+from flowtex.field.validation import ALL_AT_REST, Checked, in_own_units
 
-#: Attribute of a coarsest level with the number of nodes (J, I) of the whole field.
-WHOLE_SHAPE = "_whole_shape"
-#: Attribute of the coarsest level of a store: the function that opens the field again.
-OPENED = "_opened"
+if TYPE_CHECKING:
+    import xarray as xr
 
-#: Attributes that a field takes from its source as they are.
-KEPT = ("section", "reading", "volume_values")
-#: Attributes that are computed from positions and velocity alone.
-_SHARED = ("surface", "index_velocity")
-#: Attributes that a field with other scalars or steps has as well.
-_LARGE = (WHOLE_SHAPE, FINEST)
+#: Arguments of :meth:`FlowField.from_file`. Files contain their times.
+OF_FILES = tuple(name for name in (*OF_DATASETS, *OF_MESHES) if name != "times")
 
 
-@dataclass(frozen=True, eq=False, repr=False)
-class FlowField(FieldConstructors, FieldQuantities):
+class FlowField(FieldData):
     """Velocity on a surface, steady or time-varying.
 
     Make one with :meth:`from_arrays`, :meth:`from_triangles`, :meth:`from_pyvista`,
@@ -127,54 +109,8 @@ class FlowField(FieldConstructors, FieldQuantities):
     True
     """
 
-    points: Floats
-    velocity: Steps
-    times: Floats
-    valid: Bools
-    periodic: tuple[bool, bool]
-    scalars: Mapping[str, Steps] = field(default_factory=dict)
-    name: str = ""
-    length_unit: str = ""
-    time_unit: str = ""
-    has_position: Bools | None = None
-    sign_free: bool = False
-    units: Mapping[str, str] = field(default_factory=dict)
-    long_names: Mapping[str, str] = field(default_factory=dict)
-    start: Any = None
-    projection: Projection | None = None
-    triangles: Indices | None = None
-    formula: Formula | None = None
-    uncertainty: str = ""
-    section: SectionAxes | None = None
-    reading: Reading = NOTHING
-    velocity_unit: str = ""
-    volume_values: Mapping[str, Floats] = field(default_factory=dict)
-    on_cells: tuple[str, ...] = ()
-    vectors: str = ""
-    parts: Mapping[str, Steps] = field(default_factory=dict)
-
-    def __post_init__(self) -> None:
-        """Let unknown names of scalars raise errors that say how to get them."""
-        if not isinstance(self.scalars, Scalars):
-            object.__setattr__(self, "scalars", Scalars(self.scalars))
-
-    def __reduce_ex__(self, protocol: SupportsIndex) -> str | tuple[Any, ...]:
-        opened = vars(self).get(OPENED)
-        if opened is None:
-            return super().__reduce_ex__(protocol)
-        return (opened, ())
-
-    def __getstate__(self) -> dict[str, Any]:
-        """Return the data without cached properties, which are computed again."""
-        kind = type(self)
-        found = {}
-        for name, value in vars(self).items():
-            if not isinstance(getattr(kind, name, None), cached_property):
-                found[name] = value
-        return found
-
     @classmethod
-    def of(cls, arrays: FieldArrays) -> FlowField:
+    def of(cls, arrays: SourceArrays) -> Self:
         """Make a field from a source.
 
         Examples
@@ -185,24 +121,11 @@ class FlowField(FieldConstructors, FieldQuantities):
         >>> flowtex.FlowField.of(arrays).shape
         (2, 3)
         """
-        if hasattr(arrays, "triangles"):
-            make: Any = cls.from_triangles
-        else:
-            make = cls.from_arrays
-        arguments = dict(vars(arrays))
-        notable = arguments.pop("notable_normal")
-        kept = {}
-        for k in KEPT:
-            if k in arguments:
-                kept[k] = arguments.pop(k)
-        parts = arguments.pop("parts")
-        field: FlowField = make(**arguments)
-        scalars = dict(field.scalars)
-        kept["parts"] = {name: scalars.pop(name) for name in parts}
-        field = with_faces(field.same_flow(scalars=scalars, **kept))
+        field = cls._checked(arrays)
+        field = field._with_faces()
         if isinstance(field.velocity, LazySteps) or arrays.projection is not None:
             return field
-        reading = field.reading.with_normal_share(field.normal_share, notable)
+        reading = field.reading.with_normal_share(field.normal_share, arrays.notable_normal)
         if reading != field.reading and reading[-1].notable:
             notify(reading[-1].text)
         return field.same_flow(reading=reading)
@@ -227,7 +150,7 @@ class FlowField(FieldConstructors, FieldQuantities):
         units: Mapping[str, str] | None = None,
         long_names: Mapping[str, str] | None = None,
         projection: Projection | None = None,
-    ) -> FlowField:
+    ) -> Self:
         """Make a field from arrays.
 
         Parameters
@@ -310,20 +233,25 @@ class FlowField(FieldConstructors, FieldQuantities):
         (31, 41)
         """
         plain = plain_grid(points, velocity, components)
-        points = plain.points
-        velocity = plain.velocity
-        texts = length_unit or plain.length_unit, time_unit, velocity_unit or plain.velocity_unit
-        t, scale, v, data, words = prepared(times, texts, velocity, scalars, units, axes=2)
-        words |= {"name": name, "vectors": vectors, "projection": projection}
-        words |= {"long_names": dict(long_names or {}), "on_cells": tuple(cell_scalars or ())}
-        on_globe = projection is not None and projection.is_globe
-        parts = points, v, t, valid, periodic, data, cell_scalars or {}
-        surface, nodes = grid_nodes(*parts, sign_free=sign_free, on_globe=on_globe)
-        flow = cls._moving(t, scale, sign_free=sign_free, **words, **nodes)
-        flow.__dict__["surface"] = surface  # equal to what the property would make
-        if "speed" in (scalars or {}):
-            return flow
-        return flow._with_speed_on_earth()
+        arrays = GridArrays(
+            points=plain.points,
+            velocity=plain.velocity,
+            times=times,
+            valid=valid,
+            periodic=periodic,
+            scalars=_or_none_at_all(scalars),
+            cell_scalars=_or_none_at_all(cell_scalars),
+            name=name,
+            length_unit=length_unit or plain.length_unit,
+            time_unit=time_unit,
+            velocity_unit=velocity_unit or plain.velocity_unit,
+            vectors=vectors,
+            sign_free=sign_free,
+            units=_or_none_at_all(units),
+            long_names=_or_none_at_all(long_names),
+            projection=projection,
+        )
+        return cls._checked(arrays)
 
     @classmethod
     def from_triangles(
@@ -344,7 +272,7 @@ class FlowField(FieldConstructors, FieldQuantities):
         units: Mapping[str, str] | None = None,
         long_names: Mapping[str, str] | None = None,
         projection: Projection | None = None,
-    ) -> FlowField:
+    ) -> Self:
         """Make a field on a surface of triangles from arrays.
 
         Parameters
@@ -394,269 +322,467 @@ class FlowField(FieldConstructors, FieldQuantities):
         >>> flowtex.FlowField.from_triangles(points, [(0, 1, 2), (0, 2, 3)], velocity).size_text
         '4 nodes, 2 triangles'
         """
-        texts = length_unit, time_unit, velocity_unit
-        t, scale, v, data, words = prepared(times, texts, velocity, scalars, units, axes=1)
-        words |= {"name": name, "vectors": vectors, "projection": projection}
-        words |= {"long_names": dict(long_names or {}), "on_cells": tuple(cell_scalars or ())}
-        on_globe = projection is not None and projection.is_globe
-        parts = points, triangles, v, t, valid, data, cell_scalars or {}
-        reading = triangle_nodes(*parts, on_globe=on_globe)
-        surface, nodes = finish(reading, READING_PARTS, "Reading")
-        flow = cls._moving(t, scale, periodic=(False, False), **words, **nodes)
-        flow.__dict__["surface"] = surface  # equal to what the property would make
-        if "speed" in (scalars or {}):
-            return flow
-        return flow._with_speed_on_earth()
+        arrays = TriangleArrays(
+            points=points,
+            triangles=triangles,
+            velocity=velocity,
+            times=times,
+            valid=valid,
+            scalars=_or_none_at_all(scalars),
+            cell_scalars=_or_none_at_all(cell_scalars),
+            name=name,
+            length_unit=length_unit,
+            time_unit=time_unit,
+            velocity_unit=velocity_unit,
+            vectors=vectors,
+            units=_or_none_at_all(units),
+            long_names=_or_none_at_all(long_names),
+            projection=projection,
+        )
+        return cls._checked(arrays)
 
     @classmethod
-    def _moving(cls, times: Floats | None, scale: float, **arrays: Any) -> FlowField:
-        """Make a field with a scaled velocity; warn if it is at rest."""
-        velocity = scaled_steps(arrays.pop("velocity"), scale)
-        if times is None:
-            times = np.arange(len(velocity), dtype=float)
+    @accepts_options(FieldOptions, names=("vectors", *OF_MESHES, *OF_BOTH), settings=False)
+    def from_pyvista(cls, mesh: Any, *, name: str = "", **options: Any) -> Self:
+        """Make a field from a PyVista mesh, or from a series of them.
+
+        Parameters
+        ----------
+        mesh
+            A StructuredGrid, RectilinearGrid or ImageData, drawn in rows and columns, or as
+            triangles if its cells turn by 35 degrees or more along a line of nodes; or a PolyData
+            or an UnstructuredGrid, whose surface is drawn as triangles. Of a volume this is the
+            outer surface, unless ``slice`` or ``contour`` cuts it. A MultiBlock with one structured
+            block, or one volume, is treated as that block; otherwise the surfaces of its blocks are
+            drawn together. Structured surfaces that meet at their borders become one surface. The
+            time steps of a series are a list or tuple of meshes, a MultiBlock of meshes with the
+            same nodes, or a PyVista reader with time values.
+        vectors
+            Name of the velocity on points or cells, with 2 or 3 components. By default the only
+            array that can be the velocity, or the active vectors of the mesh. Components in
+            separate arrays are named with commas between, as in ``"u,v,w"``. They are found
+            automatically if the mesh has no array of vectors and their names differ only in the
+            component, such as ``X Velocity``, ``Y Velocity`` and ``Z Velocity``. Two components
+            lie in the plane of a flat mesh: in y = 0 they are along x and z. Those of a volume or a
+            curved surface are along x and y, unless their names say otherwise.
+        plane
+            Index plane to draw of a three-dimensional structured mesh: ``"k=20"``, ``"j=0"`` or
+            ``"i=-1"``, where negative numbers count from the end. On a k-plane the surface's (i, j)
+            are the mesh's (i, j), on a j-plane (i, k), on an i-plane (j, k). A mesh that is one
+            node thick along an axis needs no plane; its (i, j) follow the same rule.
+        slice
+            Plane through a volume of any kind, drawn as triangles: ``"x=0.5"``, a normal such as
+            ``"1,1,0"``, a normal and a point as in ``"1,1,0 through 0.5,0.5,0.2"``, or a pair of
+            normal and point. Without a point the plane goes through the middle of the mesh; without
+            ``block`` it cuts all volumes of a MultiBlock.
+        contour
+            An array and a value, ``"pressure=101325"``: the isosurface in a volume.
+        times
+            Time of each step, (T,). By default the reader's time values, or ``TimeValue`` in the
+            field data of every step, by which steps are sorted, or 0, 1, 2, ...
+        components
+            Directions of the components: ``"polar"`` or ``"cylindrical"`` for away from the z axis,
+            around it, and along it, ``"spherical"`` for away from the origin, southward and
+            eastward. Of two components the spherical ones are southward and eastward. By default
+            they are along x, y and z.
+        periodic, name, sign_free
+            As for :meth:`from_arrays`; ``periodic`` and ``sign_free`` are for structured meshes
+            only.
+        block
+            Number or path of the block of a MultiBlock to draw, such as ``"Base/Zone 1"``. Numbers
+            count from 0 and include only blocks with cells.
+        preference
+            The array to read where points and cells have one of the same name: ``"point"``, the
+            default, or ``"cell"``.
+        mask
+            ``False`` to draw vectors with a fill value, such as -999, too.
+        length_unit, time_unit, velocity_unit
+            Units of the positions, the times and the velocity, for legends and scale bars.
+        uncertainty
+            As for :meth:`from_xarray`: a scalar, or an array with a value for each node.
+
+        Returns
+        -------
+        FlowField
+            Positions are in the mesh's units. Arrays with one component become ``scalars``; those
+            on cells are drawn flat, also on a cut, and between two layers of cells a plane has the
+            values of the second one. A velocity on cells is averaged over the visible cells around
+            each node, on triangles weighted by area, and so is its magnitude.
+
+        Raises
+        ------
+        FieldError
+            When the mesh has no surface, the plane or the vectors are missing or ambiguous, the
+            steps of a series differ in their nodes, or :meth:`from_arrays` or
+            :meth:`from_triangles` raises it.
+
+        Warns
+        -----
+        Notice
+            When flowtex made a choice, such as the outer surface of a volume, or when 5 % of the
+            flow are normal to a surface, or half of it to a cut of a volume.
+
+        Notes
+        -----
+        Points and cells that VTK's ghost arrays hide, points with ``IBlank`` 0 (PLOT3D), and points
+        that a sampling filter marked in ``vtkValidPointMask`` are not drawn, and neither are
+        vectors with a fill value, such as -999. Steps whose nodes are in another order are matched
+        by ``GlobalPointIds`` or by position. ``field.reading`` lists all. The mesh is not changed.
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> import pyvista as pv
+        >>> import flowtex
+        >>> box = pv.ImageData(dimensions=(12, 10, 8))
+        >>> box["wind"] = np.stack(
+        ...     [box.points[:, 1], -box.points[:, 0], 0 * box.points[:, 2]], axis=-1
+        ... )
+        >>> flowtex.FlowField.from_pyvista(box, plane="k=4").shape
+        (10, 12)
+        """
+        made: Self = reader("mesh")(mesh, FieldOptions.of(**options), name=name)
+        return made
+
+    @classmethod
+    @accepts_options(FieldOptions, names=OF_FILES, settings=False)
+    def from_file(
+        cls,
+        path: str | Path | Sequence[str | Path],
+        *,
+        time: float | str | None = None,
+        **options: Any,
+    ) -> Self:
+        """Make a field from a file, or from several that belong together.
+
+        Parameters
+        ----------
+        path
+            A mesh in any format that PyVista reads, or a PLOT3D grid or solution, whose counterpart
+            is found by its name in the same folder: ``postxyz.bin`` and ``postq.bin``, ``wing.xyz``
+            (or ``.x``, ``.g``) and ``wing.q``. For an OBJ, PLY or STL the vectors are in a file
+            with the same name, ``hull.npy`` for ``hull.stl``: (N, 3) for its points or triangles,
+            or (T, N, 3), in the order of the file. Or data of the Earth: NetCDF, a Zarr store,
+            GRIB, GeoJSON of points, CSV with a header, or the JSON of wind maps;
+            ``model.nc/ocean`` is a group of a file. Several such
+            files, the parts of a model's output or the steps of a series, are given as a list.
+        vectors
+            Name of the velocity, as for :meth:`from_pyvista`. For a PLOT3D solution it is
+            ``Velocity``, computed from density and momentum.
+        plane, slice, contour, periodic, sign_free, preference
+            As for :meth:`from_pyvista`.
+        time
+            One time of the file, drawn as a steady field, or ``"first"`` or ``"last"``. Between two
+            times of a mesh the flow is interpolated. All times by default.
+        block
+            Number or path of the block to draw, such as ``"Base/Zone 1"``, if the file has several.
+            Numbers count from 0 and include only blocks with cells.
+        components
+            As for :meth:`from_pyvista` and :meth:`from_xarray`.
+        projection, globe, level, sel, isel, dims, direction, max_edge
+            As for :meth:`from_xarray`, for gridded data and models.
+        mask, length_unit, time_unit, velocity_unit
+            As for :meth:`from_pyvista` and :meth:`from_xarray`.
+        uncertainty
+            As for :meth:`from_xarray`; of a mesh a scalar.
+
+        Returns
+        -------
+        FlowField
+            Its ``name`` is the file's, without folder and suffix.
+
+        Raises
+        ------
+        FieldError
+            When the file is missing, empty, unreadable, corrupt or of an unknown format, or does
+            not contain a flow; the text starts with the path.
+
+        Examples
+        --------
+        >>> import flowtex
+        >>> flowtex.examples.airfoil().save("airfoil.vts")
+        >>> flowtex.FlowField.from_file("airfoil.vts").shape
+        (65, 193)
+        """
+        made: Self = reader("file")(path, FieldOptions.of(**options), time=time)
+        return made
+
+    @classmethod
+    @accepts_options(FieldOptions, names=OF_DATASETS[1:], settings=False)
+    def from_xarray(
+        cls,
+        data: xr.Dataset | xr.DataTree | xr.DataArray | Sequence[Any] | Any,
+        u: str | None = None,
+        v: str | None = None,
+        *,
+        name: str = "",
+        **selection: Any,
+    ) -> Self:
+        """Make a field from xarray datasets, arrays or tables, such as the output of a model.
+
+        Parameters
+        ----------
+        data
+            A Dataset, or a list of several that belong together, such as NEMO's files of U, of V
+            and of coordinates, or the steps of a series; or a DataTree, of which one group has a
+            velocity. A DataArray has an axis of two or three components, or is one of a list. A
+            DataFrame of pandas, GeoPandas or Polars has columns for positions, perhaps for time,
+            and for the components: rows of a grid become a grid, other rows are points. Points
+            along one dimension are joined by triangles to their neighbours, but not across gaps;
+            so are reduced Gaussian grids. Only coordinates and one step are read at first, or three
+            where data are missing; further steps are read when they are drawn.
+        u, v
+            Names of the components. By default the only pair that is recognised as the velocity by
+            CF standard names, long names or names.
+        projection
+            A flat map, or ``"globe"``; see :class:`flowtex.field.earth.Projection`. By default
+            plate carree around the middle of the data, or a polar projection near and around a
+            pole.
+        globe
+            Whether to draw on a sphere; the same as ``projection="globe"``.
+        name
+            Name for captions.
+        sel, isel
+            Selections along axes, by value and by index, such as ``sel={"level": 500}``, or of a
+            range of times, its ends included: ``sel={"time": slice("2001-02", "2001-03")}``.
+        uncertainty
+            The uncertainty of the direction, where streaks are shorter and fainter: the name of a
+            scalar, or an array of the nodes, with the standard deviation of the velocity over its
+            magnitude; or a dimension, such as ``"number"`` of an ensemble: the mean over it is
+            drawn, and its spread becomes a scalar.
+        mask
+            Name of the only variable that marks missing data, or ``False`` to draw all values. By
+            default flowtex applies masks with CF standard names or common names, quality flags, and
+            undeclared fill values such as -999. Land masks do not apply to winds that vary over
+            land.
+        components
+            Directions of the components: ``"earth"`` for eastward and northward, ``"grid"`` for
+            along rows and columns, ``"plane"`` for along x and y, ``"polar"`` for away from the
+            origin and around it, ``"spherical"`` for southward and eastward, along the colatitude
+            and the longitude. The angle of a speed is ``"from"`` where the flow comes, ``"to"``
+            where it goes, both clockwise from north, or an ``"angle"`` counterclockwise from x. By
+            default the names of the variables and the grid decide;
+            ``field.reading.of("components")`` names the rule.
+        dims
+            Coordinates that are drawn across and upward, such as ``"lon,lat"``. By default their
+            names and attributes decide.
+        length_unit, time_unit, velocity_unit
+            Units in place of those in the data: of x and y, of times that are numbers, and of the
+            velocity.
+        direction
+            Name of the direction of a speed, as in ``vectors="ff", direction="dd"``. Its names and
+            attributes decide whether the flow comes from there or goes there, clockwise from north,
+            or whether it is an angle counterclockwise from x.
+        max_edge
+            Longest edge of the triangles that join scattered points, in the unit of the positions,
+            on the Earth in kilometres, or with a unit, as in ``"50 km"``. By default triangles that
+            are much larger than others nearby are left out.
+        **selection
+            The same as ``sel``, such as ``level=500`` or ``time="2000-01-02"``. ``time`` and
+            ``level`` select along these axes whatever their names. By default all times, the level
+            nearest to the surface, and the first entry of any other axis.
+
+        Returns
+        -------
+        FlowField
+            Positions on longitude and latitude become metres on the map or the globe; x and y keep
+            their unit, and velocities keep theirs as ``velocity_unit``. A flat map has the
+            projected velocity in m/s, and its scalar ``"speed"`` is the speed on the Earth in the
+            unit of the data. Components on the sides of cells (Arakawa C) are averaged to the
+            centres. Other variables at the same nodes are ``scalars``. ``reading`` lists what was
+            done.
+
+        Raises
+        ------
+        FieldError
+            When components or coordinates are not recognised, a selection does not exist, the
+            components lie at different positions or times, or positions move within a series.
+        ModuleNotFoundError
+            When xarray, cf_xarray or pyproj is missing.
+
+        Warns
+        -----
+        DatasetNotice
+            When flowtex made a choice, such as a level, or left out values that only one of the
+            components has.
+
+        Examples
+        --------
+        >>> import flowtex
+        >>> winds = flowtex.examples.weather()
+        >>> field = flowtex.FlowField.from_xarray(winds, level=500, projection="robinson")
+        >>> print(field.reading)
+        select: velocity: u, v (standard name with 'eastward' and 'northward')
+        select: level: 500 hPa
+        coordinates: longitude and latitude
+        components: eastward and northward (by the names of the variables)
+        """
+        options = FieldOptions.of_dataset({"u": u, "v": v, **selection})
+        made: Self = reader("dataset")(data, options, name=name)
+        return made
+
+    @classmethod
+    def _checked(cls, arrays: SourceArrays) -> Self:
+        """Check arrays, and make a field of them."""
+        on_globe = arrays.projection is not None and arrays.projection.is_globe
+        if isinstance(arrays, TriangleArrays):
+            own = in_own_units(arrays, axes=1)
+            steps = triangle_nodes(arrays, own, on_globe=on_globe)
+            nodes = finish(steps, READING_PARTS, "Reading")
         else:
-            times = times.copy()
+            own = in_own_units(arrays, axes=2)
+            nodes = grid_nodes(arrays, own, on_globe=on_globe)
+        field = cls._made(arrays, own, nodes)
+        if "speed" in arrays.scalars:
+            return field
+        return with_speed_on_earth(field)
+
+    @classmethod
+    def _made(cls, arrays: SourceArrays, own: Checked, nodes: CheckedNodes) -> Self:
+        """Make a field of checked arrays; warn if it is at rest."""
+        surface = nodes.surface
+        velocity = scaled_steps(nodes.velocity, own.scale)
         if not moves(velocity):
             notify(ALL_AT_REST, UserWarning)
-        return cls(velocity=velocity, times=times, **arrays)
-
-    @property
-    def shape(self) -> tuple[int, int]:
-        """Number of nodes (J, I)."""
-        return self.valid.shape[0], self.valid.shape[1]
-
-    @property
-    def size_text(self) -> str:
-        """Number of nodes as text, such as ``"120 x 70 nodes (I x J)"``."""
-        if self.triangles is not None:
-            return f"{self.shape[1]:,} nodes, {self.short_size}"
-        return f"{self.shape[1]} x {self.shape[0]} nodes (I x J)"
-
-    @property
-    def short_size(self) -> str:
-        """Number of nodes as text for captions, such as ``"120 × 70 nodes"``."""
-        if self.triangles is not None:
-            count = len(self.triangles)
-            if count == 1:
-                return "1 triangle"
-            return f"{count:,} triangles"
-        rows, columns = self.__dict__.get(WHOLE_SHAPE, self.shape)
-        return f"{columns} × {rows} nodes"
-
-    @property
-    def nbytes(self) -> int:
-        """Size of the arrays in memory, in bytes."""
-        arrays = (self.points, self.velocity, self.valid, *self.scalars.values())
-        return sum(array.nbytes for array in arrays)
-
-    @property
-    def steady(self) -> bool:
-        """Whether the field has a single time step."""
-        return len(self.times) == 1
-
-    @cached_property
-    def surface(self) -> Surface:
-        """The geometry: tangents, cell sizes and positions between nodes."""
-        points = self.points
-        has_position = self.has_position
-        if has_position is not None and not has_position.all():
-            # Positions that were filled in must not count as known: tangents would bend.
-            points = np.where(has_position[..., None], points, np.nan)
-        on_globe = self.projection is not None and self.projection.is_globe
-        if self.triangles is not None:
-            return TriangleSurface(self.points, self.triangles, self.valid, on_globe=on_globe)
-        return GridSurface(points, self.valid, self.periodic, on_globe=on_globe)
-
-    @cached_property
-    def index_velocity(self) -> IndexVelocity:
-        """The velocity in index space, in cells per unit of time, with its speed."""
-        expressed = self.surface.express
-        if not isinstance(self.velocity, LazySteps):
-            return expressed(self.velocity)
-
-        def components_and_speed(velocity: Floats) -> Floats:
-            step = expressed(velocity[None])
-            return np.concatenate([step.components[0], step.speed[0, ..., None]], axis=-1)
-
-        steps = self.velocity.map(components_and_speed)
-        share = expressed(self.velocity[0][None]).normal_share
-        return IndexVelocity(
-            steps.map(lambda step: step[..., :2]), steps.map(lambda step: step[..., 2]), share
+        if own.times is None:
+            times = np.arange(len(velocity), dtype=float)
+        else:
+            times = own.times.copy()
+        scalars = Scalars(nodes.scalars)
+        parts = {name: scalars.pop(name) for name in arrays.parts}
+        field = cls(
+            points=surface.points,
+            velocity=velocity,
+            times=times,
+            valid=surface.valid,
+            periodic=surface.periodic,
+            scalars=scalars,
+            name=arrays.name,
+            length_unit=own.length_unit,
+            time_unit=own.time_unit,
+            has_position=nodes.has_position,
+            sign_free=nodes.sign_free,
+            units=own.units,
+            long_names=dict(arrays.long_names),
+            start=own.start,
+            projection=arrays.projection,
+            triangles=nodes.triangles,
+            uncertainty=own.uncertainty,
+            section=nodes.section,
+            reading=arrays.reading,
+            velocity_unit=own.velocity_unit,
+            volume_values=arrays.volume_values,
+            on_cells=tuple(arrays.cell_scalars),
+            vectors=arrays.vectors,
+            parts=parts,
         )
+        return field.with_surface(surface)
 
-    @property
-    def speed(self) -> Steps:
-        """Speed along the surface, on flat maps that on the Earth, (T, J, I)."""
-        if not self._on_flat_map:
-            return scaled_steps(self.index_velocity.speed, self.speed_scale)
-        steps = map_steps(self.scalars["speed"], np.nan_to_num)
-        if isinstance(self.velocity, LazySteps):
-            return steps
-        return np.asarray(steps)
-
-    @property
-    def normal_share(self) -> float:
-        """Share of the flow that is normal to the surface, and so is not drawn, 0 to 1."""
-        frame = self.surface.frame
-        if isinstance(self.surface, TriangleSurface) and self.surface.is_large:
-            return self.surface.normal_share(self.velocity[0])
-        if frame is None or isinstance(self.velocity, LazySteps):
-            return self.index_velocity.normal_share
-        flow = np.asarray(self.velocity[:, self.valid])
-        total = np.vdot(flow, flow)
-        out = flow @ np.cross(*frame)
-        if total > 0:
-            return float(np.sqrt(min(np.vdot(out, out) / total, 1.0)))
-        return 0.0
-
-    @property
-    def leaves_surface(self) -> bool:
-        """Whether a notable part of the flow is normal to the surface; see :attr:`speed_label`."""
-        return self.normal_share > NOTABLE_SHARE
-
-    def same_flow(self, **changes: Any) -> FlowField:
-        """Return the field with other scalars or texts; positions and velocity stay."""
-        flow = replace(self, **changes)
-        self._keep(flow, (*_SHARED, *_LARGE))
-        return flow
-
-    def _keep(self, other: FlowField, names: Sequence[str]) -> None:
-        """Give another field the values that are computed already, of some properties."""
-        for name, value in self.__dict__.items():
-            if name in names:
-                other.__dict__[name] = value
-
-    def forget(self) -> None:
-        """Free derived data, which are computed again when needed."""
-        for name in (*_SHARED, "typical"):
-            self.__dict__.pop(name, None)
-
-    def at_step(self, step: int) -> FlowField:
-        """Return one time step as a steady field; negative numbers count from the end."""
-        return self.at_steps([self.step_number(step)])
-
-    def at_steps(self, steps: Sequence[int]) -> FlowField:
-        """Return some time steps, given by increasing indices from 0, in memory."""
-        first = steps[0]
-        last = steps[-1] + 1
-        if len(steps) == len(self.times) and not isinstance(self.velocity, LazySteps):
+    def _with_faces(self) -> Self:
+        """Return the field with nodes for each face where a grid is folded; others as they are."""
+        arrays = faces_of(self)
+        if arrays is None:
             return self
-        if len(steps) < last - first:
-            index: Any = list(steps)
-        else:
-            index = slice(first, last)
-        part = replace(
-            self,
-            velocity=np.asarray(self.velocity[index]),
-            times=self.times[index],
-            scalars=_at_steps(self.scalars, index),
-            parts=_at_steps(self.parts, index),
-        )
-        part.__dict__["surface"] = self.surface  # equal to what the property would make
-        self._keep(part, _LARGE)
-        return part
+        faced = self._checked(arrays)
+        if not faced.surface.at_edge.any():
+            return self
+        texts = {name: getattr(self, name) for name in TEXTS}
+        return faced.same_flow(**texts)
 
-    @cached_property
-    def typical(self) -> FlowField:
-        """The field at typical steps, for ranges and lengths; at all if they are in memory."""
-        late = isinstance(self.velocity, LazySteps)
-        if late:
-            return self.at_steps(typical_steps(len(self.times)))
-        return self
+    def derive(self, name: str, *, horizon: float | None = None) -> Steps:
+        """Compute a scalar from the velocity and its gradient along the surface.
 
-    @cached_property
-    def first_time(self) -> float:
-        """The time that is shown by default: the first one at which something moves."""
-        return float(self.times[first_moving(self.velocity)])
+        Parameters
+        ----------
+        name
+            ``"vorticity"``: positive where the flow turns anticlockwise, seen from outside, or
+            from the positive side of a flat surface. ``"divergence"``. ``"shear"``: the magnitude
+            of the rate of strain without divergence, sqrt((du/dx - dv/dy)^2 + (dv/dx + du/dy)^2).
+            ``"okubo_weiss"``: squared shear less squared vorticity, negative in
+            vortices. ``"ftle"``: the finite-time Lyapunov exponent, the largest rate at which
+            particles that start near a node separate.
+        horizon
+            How long particles are followed for ``"ftle"``, in the unit of time; backward if
+            negative. Where that leads beyond the series, a notice states the longest one.
 
-    def step_number(self, step: int) -> int:
-        """Return the index of a time step from 0; negative numbers count from the end.
+        Returns
+        -------
+        numpy.ndarray
+            (T, J, I), or (T, 1, N) on triangles, in 1 over the unit of time (its square for
+            Okubo-Weiss); NaN where too few neighbours have data at that time, and where a particle
+            leaves the domain or the series. Lazy where the velocity is.
 
         Raises
         ------
         FieldError
-            When the step does not exist.
-        """
-        count = len(self.times)
-        if not (is_number(step) and -count <= step < count and int(step) == step):
-            raise FieldError(f"time step {step} does not exist: expected 0 to {count - 1}")
-        return int(step) % count
+            When the name is unknown, the horizon is invalid, the field is sign-free, or not all of
+            its nodes are in memory, as of a large store.
 
-    def downsample(self, factor: int) -> FlowField:
-        """Keep every ``factor``-th node along both axes, and the last line of a closed axis.
+        Notes
+        -----
+        Errors are of second order in the size of cells, on any surface. On flat maps of the Earth
+        the values are those on the sphere.
+
+        Examples
+        --------
+        >>> import flowtex
+        >>> field = flowtex.examples.double_gyre_field(shape=(41, 81))
+        >>> field.derive("vorticity").shape
+        (1, 41, 81)
+        """
+        return derive(self, name, horizon)
+
+    def with_derived(self, name: str, *, horizon: float | None = None) -> Self:
+        """Return the field with the result of ``derive`` among its scalars.
+
+        Examples
+        --------
+        >>> import flowtex
+        >>> field = flowtex.examples.double_gyre_field(shape=(41, 81))
+        >>> sorted(field.with_derived("shear").scalars)
+        ['shear', 'vorticity']
+        """
+        return self.same_flow(
+            scalars={**self.scalars, name: derive(self, name, horizon)},
+            units={**self.units, name: derived_unit(name, self)},
+            long_names={**self.long_names, name: LONG_NAMES.get(name, name)},
+        )
+
+    def at(self, x: float, y: float, z: Any = None, time: Any = None) -> PointValues | None:
+        """Return the values at a point and a time; ``None`` outside the data.
+
+        Parameters
+        ----------
+        x, y, z
+            A position in the unit of length; ``z`` is optional on a plane of constant z. For a
+            field of the Earth, longitude and latitude in degrees, on every map: then the third
+            argument is the time.
+        time
+            Time in the field's unit, or a date if the times are dates; values are interpolated. The
+            first one at which something moves by default, which pictures, axes and the widget show
+            too.
+
+        Returns
+        -------
+        PointValues or None
+            Speed and components in the units of the data, scalars, and the position.
 
         Raises
         ------
         FieldError
-            When fewer than two lines would be left, or the surface consists of triangles.
+            When a number is not finite, or the time is outside the field's times.
+
+        Examples
+        --------
+        >>> import flowtex
+        >>> round(flowtex.examples.double_gyre_field().at(0.5, 0.25).speed, 3)
+        0.222
         """
-        if self.triangles is not None:
-            raise FieldError(
-                f"{self!r} has no lines of nodes; coarsen it, as in mesh.decimate(0.5)"
-            )
-        factor = checked_count("factor", factor, expected="1 or more")
-        picks = []
-        for count, closed in zip(self.shape, self.periodic, strict=True):
-            lines = np.arange(0, count, factor)
-            if closed and lines[-1] != count - 1:
-                lines = np.append(lines, count - 1)
-            if closed:
-                fewest = 4
-            else:
-                fewest = 2
-            if len(lines) < fewest:
-                raise FieldError(
-                    f"factor is {factor}, which keeps {len(lines)} of {count} lines; expected a "
-                    f"smaller factor that keeps at least {fewest}"
-                )
-            picks.append(lines)
-        return self.at_lines(*picks)
-
-    def at_lines(self, rows: Indices, columns: Indices) -> FlowField:
-        """Return the field on some of its lines of nodes, by increasing indices along j and i.
-
-        A periodic axis keeps its first and its last line.
-        """
-        at = np.ix_(rows, columns)
-        has_position = None
-        if self.has_position is not None:
-            has_position = self.has_position[at]
-        return replace(
-            self,
-            points=self.points[at],
-            velocity=self.velocity[:, at[0], at[1]],
-            valid=self.valid[at],
-            has_position=has_position,
-            scalars=_at_nodes(self.scalars, at),
-            parts=_at_nodes(self.parts, at),
-            formula=None,  # as its nodes are evenly spaced
-        )
-
-    def __repr__(self) -> str:
-        facts = [self.size_text]
-        if self.steady:
-            facts.append("steady")
-        else:
-            facts.append(f"{len(self.times)} steps")
-        if any(self.periodic):
-            facts.append("periodic " + "".join(compress("ij", self.periodic[::-1])))
-        if self.sign_free:
-            facts.append("sign-free")
-        facts.append(f"{int((~self.valid).sum())} blanked")
-        return f"FlowField({self.name or 'unnamed'}: {', '.join(facts)})"
+        return values_near(self, x, y, z, time)
 
 
-def _at_nodes(scalars: Mapping[str, Any], at: tuple[Any, ...]) -> dict[str, Any]:
-    """Return the values of scalars at some nodes, which are an index of rows and columns."""
-    return {name: steps[:, at[0], at[1]] for name, steps in scalars.items()}
-
-
-def _at_steps(scalars: Mapping[str, Any], index: Any) -> dict[str, Any]:
-    """Return the values of scalars at some time steps; those without time stay as they are."""
-    chosen = {}
-    for name, steps in scalars.items():
-        if len(steps) > 1:
-            chosen[name] = steps[index]
-        else:
-            chosen[name] = steps
-    return chosen
+def _or_none_at_all(values: Mapping[str, Any] | None) -> Mapping[str, Any]:
+    """Return named values; none are an empty mapping."""
+    if values is None:
+        return {}
+    return values

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TypeAlias
 
 from numpy.typing import ArrayLike
 
@@ -125,3 +125,6 @@ class TriangleArrays(FieldArrays):
     """The nodes of a surface of triangles, (N,)."""
 
     triangles: ArrayLike
+
+
+SourceArrays: TypeAlias = GridArrays | TriangleArrays  #: The arrays of any source.

@@ -3,18 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any, NamedTuple, Protocol
+from typing import NamedTuple, Protocol
 
 from flowtex._util.array_types import Floats
 from flowtex.errors import FieldError
-
-FINEST = "_finest"  #: Attribute of a field that is coarser than its data: a :class:`Finest`.
+from flowtex.field.field_data import FINEST, FieldData
 
 
 class FinePart(NamedTuple):
     """Some nodes of the finest level."""
 
-    field: Any  #: A :class:`flowtex.FlowField`.
+    field: FieldData
     #: Takes (j, i) in this part to that in the coarse field.
     coarse_index: Callable[[tuple[float, float]], tuple[float, float]]
 
@@ -27,13 +26,13 @@ class Finest(Protocol):
         ...
 
 
-def finest_of(field: Any) -> Finest | None:
+def finest_of(field: FieldData) -> Finest | None:
     """Return what reads the finest level of a field; ``None`` if the field has all nodes."""
     finest: Finest | None = vars(field).get(FINEST)
     return finest
 
 
-def check_derivable(field: Any, name: str) -> None:
+def check_derivable(field: FieldData, name: str) -> None:
     """Check that a field has the nodes from which a scalar is derived.
 
     Raises

@@ -7,10 +7,12 @@ faces would mix over one cell. As triangles, each face has nodes of its own ther
 from __future__ import annotations
 
 from functools import partial
-from typing import Any
 
 from flowtex._util.array_types import Floats, Indices
+from flowtex.field.field_arrays import TriangleArrays
+from flowtex.field.field_data import FieldData
 from flowtex.field.finer import finest_of
+from flowtex.field.grids.grid_surface import GridSurface
 from flowtex.field.steps import map_steps
 from flowtex.field.triangles.triangle_nodes import repeated, solid_triangles
 
@@ -44,58 +46,48 @@ ROWS_OF_FOLDS = (
 )
 
 
-def mixes_at_folds(field: Any) -> bool:
+def mixes_at_folds(field: FieldData) -> bool:
     """Return whether a field on a grid mixes the values of faces at folds."""
-    if field.triangles is not None or field.projection is not None:
+    surface = field.surface
+    if not isinstance(surface, GridSurface) or field.projection is not None:
         return False
-    return finest_of(field) is None and bool(field.surface.is_folded)
+    return finest_of(field) is None and surface.is_folded
 
 
-def with_faces(field: Any) -> Any:
-    """Return a field with nodes for each face where a grid is folded; others as they are.
-
-    Parameters
-    ----------
-    field
-        A :class:`flowtex.FlowField`.
+def faces_of(field: FieldData) -> TriangleArrays | None:
+    """Return the arrays of a folded grid as triangles, two for each cell.
 
     Returns
     -------
-    FlowField
-        On triangles, two for each cell, where faces meet at sharp angles. Sign-free fields and
-        grids of more than :data:`MOST_NODES` nodes stay grids.
+    TriangleArrays or None
+        Without texts and units. ``None`` for surfaces that have no folds, and for sign-free fields
+        and grids of more than :data:`MOST_NODES` nodes, which stay grids.
     """
     if field.sign_free or field.valid.size > MOST_NODES or not mixes_at_folds(field):
-        return field
+        return None
     surface = field.surface
     numbers = surface.drawn
     corners = surface.corners_of(numbers)
     points = surface.points.reshape(-1, 3)
     is_drawn = solid_triangles(points, corners) & ~repeated(corners)
     numbers = numbers[is_drawn]
-    arrays = {**field.scalars, **field.parts}
     nodal = {}
     on_cells = {}
-    for name, steps in arrays.items():
+    for name, steps in {**field.scalars, **field.parts}.items():
         if name in field.on_cells:
             on_cells[name] = map_steps(steps, partial(_as_row, at=surface.cells_of(numbers)))
         else:
             nodal[name] = map_steps(steps, _as_row)
-    faced = type(field).from_triangles(
-        points,
-        corners[is_drawn],
-        map_steps(field.velocity, _as_row),
+    return TriangleArrays(
+        points=points,
+        triangles=corners[is_drawn],
+        velocity=map_steps(field.velocity, _as_row),
         times=field.times,
         valid=field.valid.ravel(),
         scalars=nodal,
         cell_scalars=on_cells,
+        parts=tuple(field.parts),
     )
-    if not faced.surface.at_edge.any():
-        return field
-    scalars = dict(faced.scalars)
-    parts = {name: scalars.pop(name) for name in field.parts}
-    texts = {name: getattr(field, name) for name in TEXTS}
-    return faced.same_flow(scalars=scalars, parts=parts, **texts)
 
 
 def _as_row(step: Floats, at: Indices | slice = slice(None)) -> Floats:

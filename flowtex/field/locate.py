@@ -22,9 +22,9 @@ from flowtex._util.arguments import brief, check_field, checked_array
 from flowtex._util.array_types import AnyArray, Floats, Indices
 from flowtex._util.cache import WeakCache
 from flowtex.errors import FieldError
-from flowtex.field.constructors import FieldConstructors
 from flowtex.field.derived.gradient import true_positions
 from flowtex.field.earth.projection import EARTH_RADIUS, GLOBE, Projection
+from flowtex.field.field_data import FieldData
 from flowtex.field.triangles.triangle_nodes import solid_triangles
 from flowtex.field.triangles.triangle_surface import Surface
 
@@ -93,7 +93,7 @@ def surface_point(surface: Surface, index: ArrayLike) -> SurfacePoint:
     return SurfacePoint((float(place[0]), float(place[1])), nodes, weights, cell)
 
 
-def value_point(field: Any, index: ArrayLike) -> SurfacePoint:
+def value_point(field: FieldData, index: ArrayLike) -> SurfacePoint:
     """Return the point at (j, i) with its cell where that is a parallelogram, else its triangle."""
     point = surface_point(field.surface, index)
     if field.triangles is None:
@@ -107,12 +107,12 @@ def value_point(field: Any, index: ArrayLike) -> SurfacePoint:
     return point
 
 
-def _cell_nodes(field: Any, cell: Any) -> Indices:
+def _cell_nodes(field: FieldData, cell: Any) -> Indices:
     first = cell[0] * field.shape[1] + cell[1]
     return np.array([first, first + 1, first + field.shape[1], first + field.shape[1] + 1])
 
 
-def _places(field: Any, nodes: Indices) -> Floats:
+def _places(field: FieldData, nodes: Indices) -> Floats:
     """Return longitudes and latitudes of nodes of a cell, (K, 2), or positions, (K, 3)."""
     points = field.surface.points.reshape(-1, 3)[nodes]
     if field.projection is None:
@@ -120,7 +120,7 @@ def _places(field: Any, nodes: Indices) -> Floats:
     return lonlats(field, points)
 
 
-def lonlats(field: Any, points: Floats) -> Floats:
+def lonlats(field: FieldData, points: Floats) -> Floats:
     """Return longitudes and latitudes of corners of a cell, (K, 2), continuous in it."""
     assert field.projection is not None
     lon, lat = map(np.array, field.projection.lonlat(points))
@@ -139,7 +139,7 @@ def turned(lon: Any) -> Any:
     return (lon + 180.0) % 360.0 - 180.0
 
 
-def _is_skew(field: Any, places: Floats) -> bool:
+def _is_skew(field: FieldData, places: Floats) -> bool:
     a, b, c, d = places
     size = max(np.abs(b - a).max(), np.abs(c - a).max())
     if field.projection is None:
@@ -288,12 +288,14 @@ def _on_border(at: Floats, nodes: Floats) -> Floats:
 _locators: WeakCache[Locator] = WeakCache()
 
 
-def locator(field: Any) -> Locator:
+def locator(field: FieldData) -> Locator:
     """Return the locator of a field's surface, which is cached as long as the field lives."""
     return _locators.get("locator", lambda: Locator(field.surface), owner=field)
 
 
-def locate(field: Any, point: ArrayLike, *, tolerance: float = 0.1) -> tuple[float, float] | None:
+def locate(
+    field: FieldData, point: ArrayLike, *, tolerance: float = 0.1
+) -> tuple[float, float] | None:
     """Return (j, i), in cells, of a point (3,), or (2,) with z = 0, in the mesh's own coordinates.
 
     The result is ``None`` if the surface is farther than ``tolerance`` times the size of the
@@ -312,7 +314,7 @@ def locate(field: Any, point: ArrayLike, *, tolerance: float = 0.1) -> tuple[flo
     >>> [round(number, 6) for number in locate(field, (0.5, 0.25))]
     [25.0, 50.0]
     """
-    check_field(field, FieldConstructors)
+    check_field(field, FieldData)
     expected = "two or three finite coordinates in the mesh's units"
     at = checked_array("point", point, expected=expected)
     if at.shape not in ((2,), (3,)) or not np.isfinite(at).all():
@@ -332,7 +334,7 @@ def locate(field: Any, point: ArrayLike, *, tolerance: float = 0.1) -> tuple[flo
 
 
 def locate_lonlat(
-    field: Any, lon: float, lat: float, *, tolerance: float = EARTH_TOLERANCE
+    field: FieldData, lon: float, lat: float, *, tolerance: float = EARTH_TOLERANCE
 ) -> tuple[float, float] | None:
     """Return (j, i), in cells, of a longitude and latitude in degrees; ``None`` outside the data.
 
@@ -348,7 +350,7 @@ def locate_lonlat(
 
 
 def _nearest_lonlat(
-    field: Any, lon: float, lat: float, tolerance: float
+    field: FieldData, lon: float, lat: float, tolerance: float
 ) -> tuple[float, float] | None:
     """Return (j, i) of a place in the triangle to which walks lead."""
     surface = (finder := _earth_locator(field)).surface
@@ -378,7 +380,7 @@ def _nearest_lonlat(
     return float(j), float(i)
 
 
-def _earth_locator(field: Any) -> Locator:
+def _earth_locator(field: FieldData) -> Locator:
     """Return the locator of a field's nodes on the globe; the locator is cached with the field."""
     if field.projection == EARTH:
         return locator(field)
@@ -391,7 +393,7 @@ def _earth_locator(field: Any) -> Locator:
 
 
 def _in_parallelogram(
-    field: Any, first: int, at: tuple[float, float], tolerance: float
+    field: FieldData, first: int, at: tuple[float, float], tolerance: float
 ) -> tuple[float, float] | None:
     """Return (j, i) of a place in a cell from a node on; LinAlgError if no parallelogram."""
     surface = field.surface

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
-from functools import cached_property, partial
-from typing import Any, Self
+from functools import partial
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -13,19 +13,11 @@ from numpy.typing import ArrayLike
 from flowtex._util.arguments import brief, check_field, checked_array
 from flowtex._util.array_types import Floats
 from flowtex.errors import FieldError
-from flowtex.field.constructors import FieldConstructors
 from flowtex.field.dates import time_within
 from flowtex.field.derived.gradient import true_positions
-from flowtex.field.derived.quantities import (
-    FOLLOWED,
-    LONG_NAMES,
-    derived_steps,
-    derived_unit,
-    followed_steps,
-    magnitude_label,
-)
 from flowtex.field.earth.projection import Projection
-from flowtex.field.finer import check_derivable, finest_of
+from flowtex.field.field_data import Data, FieldData
+from flowtex.field.finer import finest_of
 from flowtex.field.grids.grid_nodes import weighted_axis
 from flowtex.field.interpolation import at_moment, nearer_step, steps_around
 from flowtex.field.locate import (
@@ -42,8 +34,6 @@ from flowtex.field.locate import (
 )
 from flowtex.field.scalars import Scalars
 from flowtex.field.steps import LazySteps, Steps
-from flowtex.field.units import factor, speed_unit
-from flowtex.field.validation import known_nodes
 
 #: Share of the way to the middle of a cell by which its corners are moved to one side of a map.
 INWARD = 1e-6
@@ -86,7 +76,7 @@ class PointValues:
     northward: float = 0.0
 
 
-def values_at(field: Any, index: ArrayLike, time: Any = None) -> PointValues:
+def values_at(field: FieldData, index: ArrayLike, time: Any = None) -> PointValues:
     """Return the values of a field at a point of its surface.
 
     They are bilinear in cells that are parallelograms, in longitude and latitude or in space,
@@ -117,7 +107,7 @@ def values_at(field: Any, index: ArrayLike, time: Any = None) -> PointValues:
     >>> sorted(values_at(field, at, time=field.times[3]).scalars)
     ['vorticity']
     """
-    check_field(field, FieldConstructors)
+    check_field(field, FieldData)
     finest = finest_of(field)
     if finest is None:
         return _values_at(field, index, time)
@@ -131,7 +121,7 @@ def values_at(field: Any, index: ArrayLike, time: Any = None) -> PointValues:
     return _with_others(_values_at(part, nearest, time), field, (float(at[0]), float(at[1])), time)
 
 
-def _moment(field: Any, time: Any) -> Any:
+def _moment(field: FieldData, time: Any) -> Any:
     """Return a time for the finest level of a field that may itself have only one step."""
     if time is None or field.steady:
         return field.first_time
@@ -139,7 +129,7 @@ def _moment(field: Any, time: Any) -> Any:
 
 
 def _with_others(
-    values: PointValues, field: Any, index: tuple[float, float], time: Any
+    values: PointValues, field: FieldData, index: tuple[float, float], time: Any
 ) -> PointValues:
     """Return values of the finest level for (j, i) in the coarse field, which may have others."""
     scalars = values.scalars
@@ -148,7 +138,7 @@ def _with_others(
     return replace(values, index=index, scalars=scalars)
 
 
-def _values_at(field: Any, index: ArrayLike, time: Any) -> PointValues:
+def _values_at(field: FieldData, index: ArrayLike, time: Any) -> PointValues:
     """Return the values at (j, i) from the nodes that are in memory."""
     point = value_point(field, index)
     moment, between = _known_steps(field, point, time)
@@ -192,7 +182,7 @@ def _values_at(field: Any, index: ArrayLike, time: Any) -> PointValues:
 
 
 def _known_steps(
-    field: Any, point: SurfacePoint, time: Any
+    field: FieldData, point: SurfacePoint, time: Any
 ) -> tuple[float, tuple[int, int, float]]:
     """Return a time as a number, the steps around it and the share of the later one.
 
@@ -216,19 +206,19 @@ def _without_velocity(values: Mapping[str, Any]) -> dict[str, Any]:
     return unknown
 
 
-def _is_known(field: Any, point: SurfacePoint, between: tuple[int, int, float]) -> bool:
+def _is_known(field: FieldData, point: SurfacePoint, between: tuple[int, int, float]) -> bool:
     """Return whether all nodes that have a share in the values at a point have data."""
     first, last, share = between
     if share == 0:
         last = first
     elif share == 1:
         first = last
-    known = point.corners(known_nodes(field, first, last))
+    known = point.corners(field.known_nodes(first, last))
     return bool(known[point.weights > 0].all())
 
 
 def _scalar_at(
-    field: Any, name: str, point: SurfacePoint, between: tuple[int, int, float]
+    field: FieldData, name: str, point: SurfacePoint, between: tuple[int, int, float]
 ) -> float:
     """Return a scalar at a point between two time steps; one on cells has the cell's value."""
     steps = field.scalars[name]
@@ -245,7 +235,7 @@ def _mean_lonlat(weights: Floats, lon: Floats, lat: Floats) -> Floats:
 
 
 def _on_earth(
-    field: Any,
+    field: FieldData,
     projection: Projection,
     point: SurfacePoint,
     values: Mapping[str, Any],
@@ -294,215 +284,76 @@ def _on_earth(
     }
 
 
-class FieldQuantities:
-    """Quantities that are computed from the arrays of a field, which inherits this class."""
+def values_near(field: FieldData, x: float, y: float, z: Any, time: Any) -> PointValues | None:
+    """Return the values at a place, as :meth:`flowtex.FlowField.at` does.
 
-    @property
-    def _on_flat_map(self) -> bool:
-        """Whether the speed is a scalar, as a flat map distorts that along the surface."""
-        field: Any = self
-        flat = field.projection is not None and not field.projection.is_globe
-        return flat and "speed" in field.scalars and "speed" in field.units
-
-    @property
-    def speed_unit(self) -> str:
-        """Unit of the velocity of the data; empty if unknown."""
-        field: Any = self
-        if self._on_flat_map:
-            return str(field.units["speed"])
-        return field.velocity_unit or speed_unit(field.length_unit, field.time_unit)
-
-    @cached_property
-    def speed_scale(self) -> float:
-        """Factor from units of length per unit of time to :attr:`speed_unit`."""
-        field: Any = self
-        own = speed_unit(field.length_unit, field.time_unit)
-        if not own or self.speed_unit in ("", own):
-            return 1.0
-        return factor(own, self.speed_unit) or 1.0
-
-    @property
-    def speed_label(self) -> str:
-        """Text for ``speed``, which off maps differs from a scalar of that name."""
-        field: Any = self
-        apart = field.leaves_surface or ("speed" in field.scalars and field.projection is None)
-        return magnitude_label(field.vectors, field.velocity_unit) + " in the surface" * apart
-
-    def label_of(self, name: str) -> str:
-        """Return the text for a scalar, or for the speed, in a legend."""
-        field: Any = self
-        if name == "speed" and name not in field.scalars:
-            return self.speed_label
-        return str(field.long_names.get(name, name))
-
-    def unit_of(self, name: str) -> str:
-        """Return the unit of a scalar, or of the speed; empty if unknown."""
-        field: Any = self
-        if name in field.units or name != "speed" or name in field.scalars:
-            return str(field.units.get(name, ""))
-        return self.speed_unit
-
-    def _with_speed_on_earth(self) -> Self:
-        """Return a field on a flat map with the speed on the Earth, which the map distorts."""
-        field: Any = self
-        projection = field.projection
-        if projection is None or projection.is_globe:
-            return self
-        lon, lat = projection.lonlat(field.points)
-        on_map = field.scalars.get("speed")  # missing where only some steps have no data
-
-        def read(number: int) -> Floats:
-            east, north = projection.components(lon, lat, field.velocity[number])
-            speed: Floats = np.hypot(east, north) * self.speed_scale
-            if on_map is not None:
-                speed[np.isnan(on_map[number])] = np.nan
-            return speed
-
-        steps: Steps = LazySteps(len(field.velocity), read)
-        if not isinstance(field.velocity, LazySteps):
-            steps = np.asarray(steps)
-        scalars = {**field.scalars, "speed": steps}
-        units = {**field.units, "speed": self.speed_unit}
-        result: Self = field.same_flow(scalars=scalars, units=units)
-        return result
-
-    def derive(self, name: str, *, horizon: float | None = None) -> Steps:
-        """Compute a scalar from the velocity and its gradient along the surface.
-
-        Parameters
-        ----------
-        name
-            ``"vorticity"``: positive where the flow turns anticlockwise, seen from outside, or
-            from the positive side of a flat surface. ``"divergence"``. ``"shear"``: the magnitude
-            of the rate of strain without divergence, sqrt((du/dx - dv/dy)^2 + (dv/dx + du/dy)^2).
-            ``"okubo_weiss"``: squared shear less squared vorticity, negative in
-            vortices. ``"ftle"``: the finite-time Lyapunov exponent, the largest rate at which
-            particles that start near a node separate.
-        horizon
-            How long particles are followed for ``"ftle"``, in the unit of time; backward if
-            negative. Where that leads beyond the series, a notice states the longest one.
-
-        Returns
-        -------
-        numpy.ndarray
-            (T, J, I), or (T, 1, N) on triangles, in 1 over the unit of time (its square for
-            Okubo-Weiss); NaN where too few neighbours have data at that time, and where a particle
-            leaves the domain or the series. Lazy where the velocity is.
-
-        Raises
-        ------
-        FieldError
-            When the name is unknown, the horizon is invalid, the field is sign-free, or not all of
-            its nodes are in memory, as of a large store.
-
-        Notes
-        -----
-        Errors are of second order in the size of cells, on any surface. On flat maps of the Earth
-        the values are those on the sphere.
-
-        Examples
-        --------
-        >>> import flowtex
-        >>> field = flowtex.examples.double_gyre_field(shape=(41, 81))
-        >>> field.derive("vorticity").shape
-        (1, 41, 81)
-        """
-        field: Any = self
-        if field.sign_free:
-            raise FieldError(f"{name} needs a direction, but this field is sign-free")
-        check_derivable(field, name)
-        if horizon is not None or name in FOLLOWED:
-            return followed_steps(name, field, horizon)
-        return derived_steps(name, field)
-
-    def with_derived(self, name: str, *, horizon: float | None = None) -> Self:
-        """Return the field with the result of ``derive`` among its scalars.
-
-        Examples
-        --------
-        >>> import flowtex
-        >>> field = flowtex.examples.double_gyre_field(shape=(41, 81))
-        >>> sorted(field.with_derived("shear").scalars)
-        ['shear', 'vorticity']
-        """
-        field: Any = self
-        result: Self = field.same_flow(
-            scalars={**field.scalars, name: self.derive(name, horizon=horizon)},
-            units={**field.units, name: derived_unit(name, field)},
-            long_names={**field.long_names, name: LONG_NAMES.get(name, name)},
-        )
-        return result
-
-    def at(self, x: float, y: float, z: Any = None, time: Any = None) -> PointValues | None:
-        """Return the values at a point and a time; ``None`` outside the data.
-
-        Parameters
-        ----------
-        x, y, z
-            A position in the unit of length; ``z`` is optional on a plane of constant z. For a
-            field of the Earth, longitude and latitude in degrees, on every map: then the third
-            argument is the time.
-        time
-            Time in the field's unit, or a date if the times are dates; values are interpolated. The
-            first one at which something moves by default, which pictures, axes and the widget show
-            too.
-
-        Returns
-        -------
-        PointValues or None
-            Speed and components in the units of the data, scalars, and the position.
-
-        Raises
-        ------
-        FieldError
-            When a number is not finite, or the time is outside the field's times.
-
-        Examples
-        --------
-        >>> import flowtex
-        >>> round(flowtex.examples.double_gyre_field().at(0.5, 0.25).speed, 3)
-        0.222
-        """
-        field: Any = self
-        if field.projection is not None and z is not None:
-            if time is not None:
-                raise FieldError(f"z is {z}, but the field lies on the Earth; omit z")
-            z, time = None, z
-        place = [x, y]
-        if z is not None:
-            place.append(z)
-        at = np.asarray(place, dtype=float)
-        if not np.isfinite(at).all():
-            raise FieldError(f"the place is {brief(place)}; expected finite numbers")
-        frame = field.surface.frame
-        tolerance = CURVED_TOLERANCE
-        if field.projection is None and frame is not None:
-            tolerance = FLAT_TOLERANCE
-            if len(at) == 2 and not frame[:, 2].any():
-                at = np.append(at, field.surface.center[2])
-        finest = finest_of(field)
-        if finest is None:
-            index = _located(field, at, tolerance)
-            if index is None:
-                return None
-            return _values_at(field, index, time)
-        part = finest.near(_in_space(field, at))
-        index = _located(part.field, at, tolerance)
+    Raises
+    ------
+    FieldError
+        As there.
+    """
+    if field.projection is not None and z is not None:
+        if time is not None:
+            raise FieldError(f"z is {z}, but the field lies on the Earth; omit z")
+        z, time = None, z
+    place = [x, y]
+    if z is not None:
+        place.append(z)
+    at = np.asarray(place, dtype=float)
+    if not np.isfinite(at).all():
+        raise FieldError(f"the place is {brief(place)}; expected finite numbers")
+    frame = field.surface.frame
+    tolerance = CURVED_TOLERANCE
+    if field.projection is None and frame is not None:
+        tolerance = FLAT_TOLERANCE
+        if len(at) == 2 and not frame[:, 2].any():
+            at = np.append(at, field.surface.center[2])
+    finest = finest_of(field)
+    if finest is None:
+        index = _located(field, at, tolerance)
         if index is None:
             return None
-        time = _moment(field, time)
-        values = _values_at(part.field, index, time)
-        return _with_others(values, field, part.coarse_index(index), time)
+        return _values_at(field, index, time)
+    part = finest.near(_in_space(field, at))
+    index = _located(part.field, at, tolerance)
+    if index is None:
+        return None
+    time = _moment(field, time)
+    values = _values_at(part.field, index, time)
+    return _with_others(values, field, part.coarse_index(index), time)
 
 
-def _located(field: Any, at: Floats, tolerance: float) -> tuple[float, float] | None:
+def with_speed_on_earth(field: Data) -> Data:
+    """Return a field on a flat map with the speed on the Earth, which the map distorts."""
+    projection = field.projection
+    if projection is None or projection.is_globe:
+        return field
+    lon, lat = projection.lonlat(field.points)
+    on_map = field.scalars.get("speed")  # missing where only some steps have no data
+
+    def read(number: int) -> Floats:
+        east, north = projection.components(lon, lat, field.velocity[number])
+        speed: Floats = np.hypot(east, north) * field.speed_scale
+        if on_map is not None:
+            speed[np.isnan(on_map[number])] = np.nan
+        return speed
+
+    steps: Steps = LazySteps(len(field.velocity), read)
+    if not isinstance(field.velocity, LazySteps):
+        steps = np.asarray(steps)
+    scalars = {**field.scalars, "speed": steps}
+    units = {**field.units, "speed": field.speed_unit}
+    return field.same_flow(scalars=scalars, units=units)
+
+
+def _located(field: FieldData, at: Floats, tolerance: float) -> tuple[float, float] | None:
     """Return (j, i) of a longitude and latitude, or of a position."""
     if field.projection is not None:
         return locate_lonlat(field, *at.tolist())
     return locate(field, at, tolerance=tolerance)
 
 
-def _in_space(field: Any, at: Floats) -> Floats:
+def _in_space(field: FieldData, at: Floats) -> Floats:
     """Return the position (3,) of a longitude and latitude on the globe, or of a place."""
     if field.projection is not None:
         position: Floats = EARTH.positions(at[:1], at[1:2])[0]

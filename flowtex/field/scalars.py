@@ -6,7 +6,7 @@ from typing import NoReturn, TypeVar
 
 from flowtex._util.arguments import near_names
 from flowtex.errors import FieldError
-from flowtex.field.derived.quantities import DERIVED, FOLLOWED
+from flowtex.field.derived.kinds import DERIVED, FOLLOWED
 
 V = TypeVar("V")
 

@@ -6,8 +6,9 @@ no direction is drawn.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from operator import itemgetter
-from typing import Any, TypeVar
+from typing import Any
 
 import numpy as np
 
@@ -15,11 +16,12 @@ from flowtex._util.arguments import near_names
 from flowtex._util.array_types import Floats
 from flowtex._util.arrays import norm
 from flowtex.errors import FieldError
+from flowtex.field.field_data import Data, FieldData
+from flowtex.field.grids.grid_surface import GridSurface
 from flowtex.field.interpolation import fill_blanked
 from flowtex.field.steps import LazySteps, Steps, map_steps
 from flowtex.field.triangles.triangle_nodes import nodal_means
 
-Field = TypeVar("Field")  #: A :class:`flowtex.FlowField`.
 CORNERS = ((0, 0), (0, 1), (1, 0), (1, 1))  #: Offsets of the cells around a node.
 UNCERTAINTY = "uncertainty"  #: Name of the scalar of an uncertainty that is an array.
 
@@ -29,7 +31,7 @@ def spread_name(dim: str) -> str:
     return f"spread over {dim}"
 
 
-def with_uncertainty(field: Field, value: Any) -> Field:
+def with_uncertainty(field: Data, value: Any) -> Data:
     """Return a field whose streaks show the uncertainty of its direction.
 
     ``value`` is the name of a scalar of the field, averaged to the nodes if it is on cells; or of
@@ -43,10 +45,9 @@ def with_uncertainty(field: Field, value: Any) -> Field:
     """
     if value is None:
         return field
-    flow: Any = field
-    scalars = flow.scalars
+    scalars: Mapping[str, Steps] = field.scalars
     if not isinstance(value, str):
-        steps = nodal_steps(flow, value, "uncertainty", "the name of a scalar, or ")
+        steps = nodal_steps(field, value, "uncertainty", "the name of a scalar, or ")
         scalars = {**scalars, UNCERTAINTY: steps}
         value = UNCERTAINTY
     if value not in scalars and spread_name(value) in scalars:
@@ -56,26 +57,25 @@ def with_uncertainty(field: Field, value: Any) -> Field:
             f"uncertainty is {value!r}, which is not a scalar; {near_names(value, scalars)}"
         )
     steps = scalars[value]
-    on_cells = tuple(name for name in flow.on_cells if name != value)
-    if value in flow.on_cells:
-        steps = _at_nodes(flow, steps)
+    on_cells = tuple(name for name in field.on_cells if name != value)
+    if value in field.on_cells:
+        steps = _at_nodes(field, steps)
         scalars = {**scalars, value: steps}
     if not isinstance(steps, LazySteps) and (least := np.min(steps, initial=0, where=steps < 0)):
         raise FieldError(
             f"uncertainty is {least:g} at a node; expected 0 where the direction is known, up to 1 "
             "where it is not, such as a standard deviation over the speed"
         )
-    changed: Field = flow.same_flow(scalars=scalars, uncertainty=value, on_cells=on_cells)
-    return changed
+    return field.same_flow(scalars=scalars, uncertainty=value, on_cells=on_cells)
 
 
-def nodal_steps(field: Any, value: Any, name: str, other: str = "") -> Floats:
+def nodal_steps(field: FieldData, value: Any, name: str, other: str = "") -> Floats:
     """Return an array of an argument as nodal values of a field, (T or 1, J, I).
 
     Parameters
     ----------
     field
-        The flow.
+        The field.
     value
         Numbers, (J, I), (T, J, I), or with the nodes in one axis, (N,) or (T, N).
     name
@@ -108,14 +108,15 @@ def nodal_steps(field: Any, value: Any, name: str, other: str = "") -> Floats:
     return array.reshape(-1, *field.shape)
 
 
-def _at_nodes(field: Any, steps: Steps) -> Steps:
+def _at_nodes(field: FieldData, steps: Steps) -> Steps:
     """Return means at the nodes, (T, J, I), of values that belong to cells."""
-    if field.triangles is not None:
-        areas = norm(field.surface.crosses)
-        count = field.shape[1]
-        flat = map_steps(steps, itemgetter(0))
-        return map_steps(nodal_means(flat, field.triangles, areas, count), itemgetter(None))
-    return map_steps(steps, _corner_means)
+    surface = field.surface
+    if isinstance(surface, GridSurface):
+        return map_steps(steps, _corner_means)
+    areas = norm(surface.crosses)
+    count = field.shape[1]
+    flat = map_steps(steps, itemgetter(0))
+    return map_steps(nodal_means(flat, surface.triangles, areas, count), itemgetter(None))
 
 
 def _corner_means(step: Floats) -> Floats:
@@ -127,7 +128,7 @@ def _corner_means(step: Floats) -> Floats:
     return np.asarray(np.ma.masked_invalid(around).mean(axis=0).filled(np.nan))
 
 
-def unknown_share(field: Any, step: int) -> Floats:
+def unknown_share(field: FieldData, step: int) -> Floats:
     """Return the uncertainty of the direction at a step, (J, I) from 0 to 1."""
     steps = field.scalars[field.uncertainty]
     if len(steps) == 1:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from functools import partial
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -17,6 +17,7 @@ from flowtex._util.array_types import Bools, Floats
 from flowtex._util.host_arrays import host_array, unit_text
 from flowtex.errors import FieldError
 from flowtex.field.dates import as_seconds
+from flowtex.field.field_arrays import FieldArrays
 from flowtex.field.steps import LazySteps, examined_steps, map_steps, typical_steps
 from flowtex.field.units import speed_unit, symbol, velocity_units
 
@@ -352,44 +353,53 @@ def _speed(step: Floats) -> Floats:
         return np.where(_known(step), np.linalg.norm(step, axis=-1), np.nan)
 
 
-def known_nodes(field: Any, first: int, last: int) -> Bools:
-    """Return the valid nodes of a field that have data at all steps of a range, (J, I)."""
-    known: Bools = field.valid.copy()
-    for step in range(first, last + 1):
-        if field.uncertainty == NO_DATA:
-            known &= np.asarray(field.scalars[NO_DATA][step]) < 1
-        elif has_late_gaps(field):
-            known &= ~np.isnan(field.scalars["speed"][step])
-    return known
-
-
-def has_late_gaps(field: Any) -> bool:
-    """Return whether data may be missing at steps that are read later, where the speed is NaN."""
-    return isinstance(field.velocity, LazySteps) and "speed" in field.scalars
-
-
 def _known(step: Floats) -> Bools:
     return np.asarray(np.isfinite(step).all(axis=-1))
 
 
-def prepared(
-    times: Any, texts: tuple[str, str, str], velocity: Any, scalars: Any, units: Any, *, axes: int
-) -> tuple[Floats | None, float, Any, Mapping[str, Any], dict[str, Any]]:
-    """Return times, a factor of the velocity, velocity and scalars without gaps, and texts.
+class Checked(NamedTuple):
+    """The times and the velocity of a field, in one system of units."""
 
-    The texts are the units of length, time and velocity; ``axes`` counts those of the nodes.
+    times: Floats | None
+    start: Any  #: The date at time 0, if the times count from one.
+    scale: float  #: Factor of the velocity to units of length per unit of time.
+    velocity: Any  #: Without gaps at single steps; not scaled yet.
+    scalars: Mapping[str, Any]
+    units: dict[str, str]
+    length_unit: str
+    time_unit: str
+    velocity_unit: str
+    uncertainty: str  #: Name of the scalar that marks gaps; empty without gaps.
+
+
+def in_own_units(arrays: FieldArrays, *, axes: int) -> Checked:
+    """Return times, velocity and scalars of arrays whose nodes have this number of axes.
+
+    Raises
+    ------
+    FieldError
+        When times or units cannot be read.
     """
-    texts = (texts[0], texts[1] or symbol(unit_text(times)), texts[2])
-    times, time_unit, start = as_seconds(times, texts[1])
-    if times is None:
-        t = None
-    else:
+    unit_of_time = arrays.time_unit or symbol(unit_text(arrays.times))
+    times, time_unit, start = as_seconds(arrays.times, unit_of_time)
+    t = None
+    if times is not None:
         t = with_gaps("times", times)
-    scale, time_unit, velocity_unit = velocity_units(texts[0], time_unit, texts[2])
-    unit = velocity_unit or speed_unit(texts[0], time_unit)
-    filled = filled_gaps(velocity, scalars, units, axes=axes, unit=unit)
-    velocity, scalars, units, uncertainty = filled
-    words: dict[str, Any] = {"length_unit": texts[0], "time_unit": time_unit}
-    words |= {"velocity_unit": velocity_unit, "start": start, "units": dict(units)}
-    words["uncertainty"] = uncertainty
-    return t, scale, velocity, scalars, words
+    length_unit = arrays.length_unit
+    scale, time_unit, velocity_unit = velocity_units(length_unit, time_unit, arrays.velocity_unit)
+    unit = velocity_unit or speed_unit(length_unit, time_unit)
+    velocity, scalars, units, uncertainty = filled_gaps(
+        arrays.velocity, arrays.scalars, arrays.units, axes=axes, unit=unit
+    )
+    return Checked(
+        times=t,
+        start=start,
+        scale=scale,
+        velocity=velocity,
+        scalars=scalars,
+        units=dict(units),
+        length_unit=length_unit,
+        time_unit=time_unit,
+        velocity_unit=velocity_unit,
+        uncertainty=uncertainty,
+    )

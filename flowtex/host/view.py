@@ -210,7 +210,10 @@ def choices_of(scene: Scene) -> tuple[Header, ...]:
     for name in scene.scalar_names:
         (low, high) = scene.usual_range(name)
         (least, most) = scene.scalar_range(name)
-        steps = len(scene.field.scalars.get(name, scene.field.velocity))
+        values = scene.field.velocity
+        if name in scene.field.scalars:
+            values = scene.field.scalars[name]
+        steps = len(values)
         choices.append(
             {
                 "name": name,

@@ -16,7 +16,8 @@ from flowtex.field.earth.projection import Projection
 from flowtex.field.finer import FinePart, Finest, finest_of
 from flowtex.field.grids.grid_surface import GridSurface
 from flowtex.field.locate import EARTH, Locator
-from flowtex.field.steps import LazySteps
+from flowtex.field.scalars import Scalars
+from flowtex.field.steps import LazySteps, Steps
 from flowtex.pyramid.source import RegionSource
 from flowtex.textures.tiles.grid_levels import level_lines
 from flowtex.textures.tiles.grid_pyramid import GridPyramid
@@ -184,7 +185,9 @@ class FinestOfRegions:
             return lambda step: source.nodes(step, *kept, valid).scalars[name]
 
         count = len(source.field.times)
-        scalars = {name: LazySteps(count, scalar(name)) for name in source.scalars}
+        scalars: Scalars[Steps] = Scalars()
+        for name in source.scalars:
+            scalars[name] = LazySteps(count, scalar(name))
         return replace(
             source.field,
             points=source.points(*kept),

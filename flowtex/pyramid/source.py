@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 import warnings
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
 from pathlib import Path
 from typing import Any, TypeAlias
 
@@ -16,7 +15,7 @@ from flowtex._util.array_types import Bools, Floats
 from flowtex._util.arrays import norm
 from flowtex.errors import FieldError, import_extra
 from flowtex.field import FlowField
-from flowtex.field.field_arrays import FieldArrays
+from flowtex.field.field_arrays import SourceArrays
 from flowtex.field.folds import ROWS_OF_FOLDS
 from flowtex.field.options import FieldOptions
 from flowtex.field.steps import LazySteps, Nodes, typical_steps
@@ -178,8 +177,8 @@ class RegionSource:
     def with_uncertainty(self, value: Any) -> RegionSource:
         """Set the uncertainty: the name of a scalar, which is read by region."""
         unread = dict.fromkeys(self.scalars, np.zeros((1, 1, 1)))
-        field = with_uncertainty(replace(self.field, scalars=unread), value)
-        self.field = replace(field, scalars={})
+        field = with_uncertainty(self.field.same_flow(scalars=unread), value)
+        self.field = field.same_flow(scalars={})
         return self
 
     def ranges(self) -> dict[str, list[tuple[float, float] | None]]:
@@ -283,7 +282,7 @@ def _source_of(data: Any, *, name: str = "", **given: Any) -> NodeSource:
         return _source_from(read_files(files, options, time=time, regions=regions))
 
 
-def _source_from(arrays: FieldArrays | Regions) -> NodeSource:
+def _source_from(arrays: SourceArrays | Regions) -> NodeSource:
     if isinstance(arrays, Regions):
         return RegionSource(arrays)
     return FieldSource(FlowField.of(arrays))

@@ -13,8 +13,7 @@ import numpy as np
 from flowtex._util.array_types import AnyArray, Bools, Floats, Indices
 from flowtex.errors import FieldError, notify
 from flowtex.field import FlowField
-from flowtex.field.field import OPENED, WHOLE_SHAPE
-from flowtex.field.finer import FINEST
+from flowtex.field.field_data import FINEST, OPENED, WHOLE_SHAPE
 from flowtex.field.options import FieldOptions
 from flowtex.field.steps import Nodes
 from flowtex.field.uncertainty import spread_name
@@ -23,6 +22,7 @@ from flowtex.pyramid.layout import VELOCITY_BITS, About
 from flowtex.pyramid.levels import Levels
 from flowtex.pyramid.places import PyramidError, is_store, place_text
 from flowtex.pyramid.source import WHOLE_NODES, RegionSource, datasets_at, source_of
+from flowtex.sources.read_fields import field_of_dataset
 from flowtex.textures.texture_set import TextureSet
 from flowtex.textures.tiles.grid_levels import averaged
 from flowtex.textures.tiles.grid_pyramid import GridPyramid
@@ -244,7 +244,7 @@ def _field_of_others(place: str, options: FieldOptions) -> FlowField:
             f"{place} is drawn with {nodes(drawn):,} of its {nodes(finest):,} nodes; "
             f"`flowtex pyramid {place} -o flow.zarr` builds a store of all of them"
         )
-    field = FlowField.from_xarray(drawn, name=name, **options.given)
+    field = field_of_dataset(drawn, options, name=name)
     if nodes(drawn) < nodes(finest):
         field.__dict__[FINEST] = FinestOfRegions(source, field)
     return field

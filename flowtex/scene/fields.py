@@ -17,7 +17,8 @@ from flowtex._util.array_types import AnyArray
 from flowtex._util.cache import ByteCache, WeakCache, digest
 from flowtex.errors import FieldError
 from flowtex.field import FlowField
-from flowtex.field.derived.quantities import DERIVED, with_vector_scalar
+from flowtex.field.derived.kinds import DERIVED
+from flowtex.field.derived.quantities import with_vector_scalar
 from flowtex.field.finer import finest_of
 from flowtex.field.options import OF_MESHES, FieldOptions
 from flowtex.field.steps import LazySteps
@@ -27,6 +28,7 @@ from flowtex.sources.datasets import is_dataset
 from flowtex.sources.datasets.own_values import with_values
 from flowtex.sources.meshes.vectors import with_array
 from flowtex.sources.plain_arrays import are_labelled, is_plain, read_arrays, read_labelled
+from flowtex.sources.read_fields import field_of_dataset, field_of_file, field_of_mesh
 from flowtex.textures.tiles.pyramid import Pyramid
 from flowtex.textures.tiles.shared import has_pyramid, shared_pyramid
 from flowtex.trace.slices import TraceSlices
@@ -157,24 +159,22 @@ def _read(mesh: Any, options: FieldOptions, time: float | str | None) -> FlowFie
     """Return the field of a mesh, a dataset, files or a store."""
     if (stored := _stored(mesh, options, time)) is not None:
         return stored
-    choices = options.given
     if are_labelled(mesh):
         return read_labelled(mesh, options)
     if is_dataset(mesh):
-        options.refuse(OF_MESHES, "meshes, but this is a dataset")
-        return FlowField.from_xarray(mesh, **choices)
+        return field_of_dataset(mesh, options)
     if isinstance(mesh, (list, tuple)) and mesh:
         meshes = mesh
     else:
         meshes = [mesh]
     if are_paths(meshes):
-        return FlowField.from_file(mesh, time=time, **choices)
-    choices.pop("uncertainty", None)
+        return field_of_file(mesh, options, time=time)
     if not isinstance(mesh, FlowField):
-        return FlowField.from_pyvista(mesh, **choices)
-    if choices:
+        return field_of_mesh(mesh, options)
+    refused = [name for name in options.given if name != "uncertainty"]
+    if refused:
         raise FieldError(
-            f"{', '.join(choices)} cannot be set for a field that already exists, {mesh!r}; "
+            f"{', '.join(refused)} cannot be set for a field that already exists, {mesh!r}; "
             "set it when you make the field"
         )
     return mesh

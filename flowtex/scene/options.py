@@ -27,10 +27,11 @@ from flowtex._util.colours import (
 )
 from flowtex.errors import FieldError, notify, raise_faults
 from flowtex.field import FlowField, Surface
-from flowtex.field.derived.quantities import COMPONENTS, SIGNED, component_name
+from flowtex.field.derived.kinds import SIGNED
 from flowtex.field.earth.coast import Coast
 from flowtex.field.options import FieldOptions, option, option_names
 from flowtex.field.validation import with_gaps
+from flowtex.field.vector_names import COMPONENTS, component_name
 from flowtex.rendering.camera import CAMERA_LIMITS, Camera, read_camera
 from flowtex.scene.fields import DATA
 from flowtex.settings import TABLE, Settings, SettingsError

@@ -27,7 +27,8 @@ from flowtex._util.colours import (
 from flowtex.errors import FieldError, notify
 from flowtex.field import FlowField
 from flowtex.field.dates import time_within
-from flowtex.field.derived.quantities import SIGNED, steps_of
+from flowtex.field.derived.kinds import SIGNED
+from flowtex.field.derived.quantities import steps_of
 from flowtex.field.folds import FOLDED, mixes_at_folds
 from flowtex.field.interpolation import at_moment, steps_around
 from flowtex.field.options import FieldOptions, option_names

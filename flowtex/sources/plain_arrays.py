@@ -25,6 +25,7 @@ from flowtex.field.validation import with_gaps
 from flowtex.remedies import Remedy, sentence
 from flowtex.sources.datasets.directions import BY_WORD, MEANINGS, MOST_RADIANS
 from flowtex.sources.datasets.directions import in_components as components_of
+from flowtex.sources.read_fields import field_of_dataset
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -101,8 +102,10 @@ def read_labelled(data: tuple[Any, ...], options: FieldOptions) -> FlowField:
     ds = u.to_dataset().assign({v.name: v})
     for name, place in zip("xy", places, strict=False):
         ds = ds.assign_coords({place.name or name: place})
-    given = {"vectors": f"{u.name},{v.name}", **options.given}
-    return FlowField.from_xarray(ds, **given)
+    given = options
+    if options.vectors is None:
+        given = replace(options, vectors=f"{u.name},{v.name}")
+    return field_of_dataset(ds, given)
 
 
 def _field(
@@ -141,7 +144,7 @@ def _labelled_field(
     chosen = replace(options, vectors="u,v", times=None)
     if on_earth and options.components is None:
         chosen = replace(chosen, components="earth")
-    return FlowField.from_xarray(data, **_without(chosen, "uncertainty"))
+    return field_of_dataset(data, replace(chosen, uncertainty=None))
 
 
 def _positions(places: list[Any]) -> tuple[Any, ...]:
@@ -195,15 +198,6 @@ def in_components(speed: Any, angle: Any, options: FieldOptions) -> tuple[AnyArr
 def _without_angle(options: FieldOptions) -> FieldOptions:
     """Return the options of components that a speed and its angles gave."""
     return replace(options, direction=None, components=None)
-
-
-def _without(options: FieldOptions, name: str) -> dict[str, Any]:
-    """Return the given options without one, which the caller applies."""
-    found = {}
-    for key, value in options.given.items():
-        if key != name:
-            found[key] = value
-    return found
 
 
 def _dataset(
@@ -283,7 +277,7 @@ def _read_named(data: Any, options: FieldOptions, scalars: Mapping[str, Any]) ->
     if len({np.shape(data[key]) for key in known.values()}) == 1 and np.ndim(data[keys[0]]) == 1:
         columns = {key: host_array(key, data[key]) for key in known.values()}
         frame = import_extra("pandas", "xarray").DataFrame(columns)
-        return FlowField.from_xarray(frame, **_without(options, "uncertainty"))
+        return field_of_dataset(frame, replace(options, uncertainty=None))
     lon_lat = _first(EARTH_PLACES, known)
     places = _first(PLACES, known) or lon_lat
     velocity = _velocity_names(options, known)

@@ -19,7 +19,7 @@ import numpy as np
 
 from flowtex._util.child.worker import is_child
 from flowtex.errors import FieldError, require_pyvista
-from flowtex.field.field_arrays import GridArrays, TriangleArrays
+from flowtex.field.field_arrays import SourceArrays
 from flowtex.field.options import FieldOptions
 from flowtex.sources.datasets.read_datasets import read_datasets
 from flowtex.sources.datasets.values import Regions
@@ -277,7 +277,7 @@ def read_files(
     *,
     time: float | str | None = None,
     regions: bool = False,
-) -> GridArrays | TriangleArrays | Regions:
+) -> SourceArrays | Regions:
     """Read the arrays of a field; callers name errors by :func:`errors_of`.
 
     Parameters

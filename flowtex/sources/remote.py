@@ -21,6 +21,7 @@ from flowtex.field.dates import date_of, written_date
 from flowtex.field.earth.projection import Projection
 from flowtex.field.field import FlowField
 from flowtex.field.field_arrays import Reading, ReadingStep
+from flowtex.field.scalars import Scalars
 from flowtex.field.steps import LazySteps, Steps
 from flowtex.remedies import Remedy
 from flowtex.sources.meshes.separate import end_of_reader, time_limit
@@ -168,6 +169,7 @@ def unpack_field(
     for step, text, notable, caption, packed in value["reading"]:
         remedies = tuple(Remedy(*values) for values in packed)
         reading.append(ReadingStep(step, text, notable, caption, remedies))
+    values["scalars"] = Scalars(values["scalars"])
     field = FlowField(
         reading=Reading(reading),
         **{name: unpacked(value["arrays"][name]) for name in ARRAYS},

@@ -23,10 +23,9 @@ from flowtex._util.progress import pool, track
 from flowtex.errors import FieldError, notify
 from flowtex.field import FlowField
 from flowtex.field.derived.gradient import node_gradient, true_positions
-from flowtex.field.derived.quantities import FOLLOWED
+from flowtex.field.derived.kinds import FOLLOWED
 from flowtex.field.interpolation import nearest_known
 from flowtex.field.steps import LazySteps, Steps
-from flowtex.field.validation import known_nodes
 from flowtex.trace.compose import Map, SideSlices, Within, compose, landings
 from flowtex.trace.integrate import MOST_CELLS, Paths, integrate
 from flowtex.trace.sampler import Sampler
@@ -571,7 +570,7 @@ def _moved(field: FlowField, step: int, horizon: float) -> tuple[Floats, Bools]:
     first = max(int(np.searchsorted(times, span[0], side="right")) - 1, 0)
     last = min(int(np.searchsorted(times, span[1])), len(times) - 1)
     part = field.at_steps(range(first, last + 1))
-    valid = known_nodes(field, first, last)
+    valid = field.known_nodes(first, last)
     if (valid != field.valid).any():
         part = replace(part, valid=valid)
     if field.steady:

@@ -14,7 +14,7 @@ import flowtex
 from flowtex import FlowField
 from flowtex._util.array_types import Floats
 from flowtex.errors import Notice
-from flowtex.field.derived.quantities import DERIVED
+from flowtex.field.derived.kinds import DERIVED
 from flowtex.field.earth.projection import EARTH_RADIUS, Projection
 from flowtex.field.steps import LazySteps
 

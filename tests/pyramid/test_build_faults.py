@@ -48,7 +48,7 @@ def middle_of_late(field: FlowField) -> FlowField:
 
 
 def warmer(field: FlowField) -> FlowField:
-    return replace(field, scalars={"heat": np.asarray(field.scalars["heat"]) + 1})
+    return field.same_flow(scalars={"heat": np.asarray(field.scalars["heat"]) + 1})
 
 
 OTHERS: list[Any] = [
@@ -123,14 +123,14 @@ def test_a_full_disk_is_told_and_a_build_goes_on_later(
 
 def test_scalars_whose_names_are_none_of_arrays(tmp_path: Path) -> None:
     field = series()
-    named = replace(field, scalars=dict.fromkeys(("c", "a b%"), field.scalars["heat"]), units={})
+    scalars = dict.fromkeys(("c", "a b%"), field.scalars["heat"])
+    named = field.same_flow(scalars=scalars, units={})
     build(named, tmp_path / "a.zarr", progress=False)
     for values in open_store(tmp_path / "a.zarr").scalars.values():
         np.testing.assert_allclose(values[2], field.scalars["heat"][2], rtol=1e-6)
     with pytest.raises(FieldError, match="scalar 'a/b' cannot be stored"):
-        build(
-            replace(field, scalars={"a/b": field.scalars["heat"]}), tmp_path / "d", progress=False
-        )
+        unnamable = field.same_flow(scalars={"a/b": field.scalars["heat"]})
+        build(unnamable, tmp_path / "d", progress=False)
     assert not (tmp_path / "d").exists()
 
 

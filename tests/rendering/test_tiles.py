@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import threading
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -150,7 +149,7 @@ def test_tiles_have_the_colours_of_this_moment(_tiled: None, scalars: str) -> No
     pictures = []
     for options, changes in ((first, then), (then, {})):
         plotter: Any = pv.Plotter(off_screen=True, window_size=list(SIZE))
-        field = replace(flat(), scalars={"depth": depth[None]})
+        field = flat().same_flow(scalars={"depth": depth[None]})
         handle = plotter.flowtex.add(field, show_scalar_bar=False, **options)
         pictures.append(plotter.screenshot(return_img=True))
         assert len(handle.surface.meshes) > 1

@@ -10,7 +10,7 @@ import pyvista as pv
 import xarray as xr
 
 from flowtex import FieldError, FlowField
-from flowtex.field.derived.quantities import is_velocity, magnitude_label
+from flowtex.field.vector_names import is_velocity, magnitude_label
 from flowtex.scene.scene import Scene
 
 VELOCITIES = (

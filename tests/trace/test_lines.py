@@ -10,6 +10,7 @@ import pytest
 from flowtex import FlowField, TraceSlices, trace
 from flowtex._util.array_types import AnyArray
 from flowtex.examples import cylinder_field, double_gyre_field, vortex_field
+from flowtex.field.scalars import Scalars
 from flowtex.scene.scene import Scene
 from flowtex.trace.store import changing_share, chosen_lines
 
@@ -17,7 +18,7 @@ from flowtex.trace.store import changing_share, chosen_lines
 def mirrored(field: FlowField) -> FlowField:
     """The same flow, run backward."""
     times = field.times[-1] - field.times[::-1]
-    return replace(field, velocity=-field.velocity[::-1], times=times, scalars={})
+    return replace(field, velocity=-field.velocity[::-1], times=times, scalars=Scalars())
 
 
 def ahead_of(slices: TraceSlices) -> AnyArray:

@@ -1,13 +1,11 @@
 """Scalars that are computed from the velocity at the nodes.
 
 Magnitudes and components of vectors are scalars too: vectors ``U`` have the scalars ``U`` and
-``U_x``. The magnitude of a velocity is labelled as the speed, the magnitude of other vectors as
-``|B|``. The unit of vectors, or else their name, shows whether they are a velocity.
+``U_x``.
 """
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable
 from functools import partial
 from typing import Any
@@ -18,45 +16,32 @@ from flowtex._util.array_types import Floats
 from flowtex._util.arrays import norm
 from flowtex.errors import FieldError
 from flowtex.field.derived.gradient import NodeGradient, node_gradient, true_velocity
+from flowtex.field.derived.kinds import DERIVED, FOLLOWED
+from flowtex.field.field_data import Data, FieldData
 from flowtex.field.finer import check_derivable, finest_of
 from flowtex.field.steps import LazySteps, Steps, map_steps, scaled_steps
-from flowtex.field.units import NONE, VELOCITIES, factor, measures, parsed, speed_unit
-from flowtex.field.validation import NO_DATA, has_late_gaps, known_nodes
-
-#: Functions of the gradient a[m, n], the change of component m along direction n.
-DERIVED: dict[str, Callable[[Floats], Floats]] = {
-    "vorticity": lambda a: a[1, 0] - a[0, 1],
-    "divergence": lambda a: a[0, 0] + a[1, 1],
-    "shear": lambda a: np.hypot(a[0, 0] - a[1, 1], a[0, 1] + a[1, 0]),
-    "okubo_weiss": lambda a: (a[0, 0] - a[1, 1]) ** 2 + 4 * a[0, 1] * a[1, 0],
-}
-SIGNED = frozenset(("vorticity", "divergence", "okubo_weiss"))  #: Derived scalars of both signs.
-#: Scalars for which particles are followed over a horizon, by the field; the tracer adds them.
-FOLLOWED: dict[str, Callable[[Any, float], Steps]] = {}
-#: Pattern of the names that other programs give to the components of a vector.
-COMPONENT = re.compile(r"[_:.\[ -][xyz012]\]?$", re.IGNORECASE)
-#: Long names that differ from the names.
-LONG_NAMES = {"okubo_weiss": "Okubo-Weiss parameter", "ftle": "FTLE"}
-LETTERS = "xyz"  #: Letters of the components, along the axes of space.
-#: Component letter by its name, a number or a letter.
-COMPONENTS = dict(zip("012xyz", 2 * LETTERS, strict=True))
-UNNAMED = "velocity"  #: Name of vectors that have none.
-#: Words of a velocity, also with a number or a letter of a component or a height.
-_VELOCITY = re.compile(
-    r"vel|velo|velocit(y|ies)|winds?|currents?|flow|drift|speed|"
-    r"(vel|[uv])(\d+m?|[uvwxyzijkoa]{1,2}|as?|r|rel|theta|phi|mean|avg)?|uvw?"
-)
-#: Words of other quantities that are made with these.
-_OTHER = re.compile(
-    r"stress|shear|flux|densit(y|ies)|grad(ient)?|gradients|force|heat|mass|momentum|rho|energy|"
-    r"power|charge|electric|magnetic|curl|rot|vorticity|div|lap|laplacian|acc|acceleration|"
-    r"displacements?|disp|potential|pressure|rate|ddt"
-)
-#: Words of a name: of letters of one case with a first capital, and of digits after them.
-_WORDS = re.compile(r"[A-Z]?[a-z]+\d*|[A-Z]+(?![a-z])\d*|\d+")
+from flowtex.field.units import factor, speed_unit
+from flowtex.field.validation import NO_DATA
+from flowtex.field.vector_names import COMPONENT, LETTERS, UNNAMED, magnitude_label
 
 
-def derived_steps(name: str, field: Any) -> Steps:
+def derive(field: FieldData, name: str, horizon: float | None = None) -> Steps:
+    """Return a scalar that is computed from the velocity, as :meth:`flowtex.FlowField.derive`.
+
+    Raises
+    ------
+    FieldError
+        As there.
+    """
+    if field.sign_free:
+        raise FieldError(f"{name} needs a direction, but this field is sign-free")
+    check_derivable(field, name)
+    if horizon is not None or name in FOLLOWED:
+        return followed_steps(name, field, horizon)
+    return derived_steps(name, field)
+
+
+def derived_steps(name: str, field: FieldData) -> Steps:
     """Return one of :data:`DERIVED`, (T, J, I); NaN where too few neighbours have data.
 
     Parameters
@@ -78,7 +63,7 @@ def derived_steps(name: str, field: Any) -> Steps:
     surface = field.surface
     projection = field.projection
     gradient = node_gradient(surface, projection)
-    if field.uncertainty == NO_DATA or has_late_gaps(field):
+    if field.uncertainty == NO_DATA or field.has_late_gaps:
         return LazySteps(len(field.times), partial(_of_known, name, field, gradient))
     return map_steps(field.velocity, partial(_derived, name, surface.points, projection, gradient))
 
@@ -92,18 +77,18 @@ def _derived(
         return gradient.with_poles(DERIVED[name](gradient.of_vectors(moved)))
 
 
-def _of_known(name: str, field: Any, gradient: NodeGradient, number: int) -> Floats:
+def _of_known(name: str, field: FieldData, gradient: NodeGradient, number: int) -> Floats:
     """Return a derived scalar of a step, from the nodes that have data there.
 
     The ``gradient`` is that of all nodes.
     """
-    known = known_nodes(field, number, number)
+    known = field.known_nodes(number, number)
     if (known != field.valid).any():
         gradient = node_gradient(field.surface, field.projection, known)
     return _derived(name, field.surface.points, field.projection, gradient, field.velocity[number])
 
 
-def steps_of(field: Any, name: str) -> Steps:
+def steps_of(field: FieldData, name: str) -> Steps:
     """Return nodal values of a field at all times, (T or 1, J, I), by the name of a scalar.
 
     Raises
@@ -136,7 +121,7 @@ def steps_of(field: Any, name: str) -> Steps:
     raise FieldError(msg)
 
 
-def followed_steps(name: str, field: Any, horizon: float | None) -> Steps:
+def followed_steps(name: str, field: FieldData, horizon: float | None) -> Steps:
     """Return one of :data:`FOLLOWED` at each node and step of a field, (T, J, I).
 
     Parameters
@@ -162,7 +147,7 @@ def followed_steps(name: str, field: Any, horizon: float | None) -> Steps:
     return FOLLOWED[name](field, horizon)
 
 
-def derived_unit(name: str, field: Any) -> str:
+def derived_unit(name: str, field: FieldData) -> str:
     """Return the unit of a derived scalar of a field; empty where it is unknown."""
     time = field.time_unit
     if not time or (field.velocity_unit and not field.length_unit):
@@ -177,31 +162,7 @@ def derived_unit(name: str, field: Any) -> str:
     return f"1/{time}"
 
 
-def is_velocity(name: str, unit: str = "") -> bool:
-    """Return whether vectors are a velocity; without a name and a unit they are."""
-    if unit.strip().lower() not in NONE and parsed(unit) is not None:
-        return measures(unit, VELOCITIES)
-    if not name:
-        return True
-    words = list(map(str.lower, _WORDS.findall(name)))
-    return any(map(_VELOCITY.fullmatch, words)) and not any(map(_OTHER.fullmatch, words))
-
-
-def magnitude_label(name: str, unit: str = "") -> str:
-    """Return the text for the magnitude of vectors."""
-    if is_velocity(name, unit):
-        return "speed"
-    if name:
-        return f"|{name}|"
-    return "magnitude"
-
-
-def component_name(name: str, axis: str) -> str:
-    """Return the name of a component of vectors, by its number or letter."""
-    return f"{name}_{COMPONENTS[axis]}"
-
-
-def with_vector_scalar(field: Any, name: str) -> Any:
+def with_vector_scalar(field: Data, name: str) -> Data:
     """Return a field with the magnitude or a component of its vectors among its scalars.
 
     Known are the drawn vectors by their name, their components also as in ``speed_x``, and other

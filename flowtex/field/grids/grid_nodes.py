@@ -13,16 +13,19 @@ from typing import Any, TypeVar, cast
 
 import numpy as np
 import scipy
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from flowtex._util.array_types import AnyArray, Bools, Floats, Indices
 from flowtex._util.arrays import bounds
 from flowtex.errors import FieldError, raise_faults
+from flowtex.field.checked_nodes import CheckedNodes
+from flowtex.field.field_arrays import GridArrays
 from flowtex.field.grids.grid_surface import GridSurface, known_positions
 from flowtex.field.grids.poles import Poles
 from flowtex.field.steps import LazySteps, first_step
 from flowtex.field.validation import (
     LENGTHS,
+    Checked,
     as_numbers,
     cell_faults,
     finite_nodes,
@@ -195,21 +198,11 @@ def _join_ends(velocity: Floats, valid: Bools, axis: int) -> None:
     ok[0] = ok[-1] = first | last
 
 
-def grid_nodes(
-    points: ArrayLike,
-    velocity: Any,
-    times: Floats | None,
-    valid: ArrayLike | None,
-    periodic: str | None,
-    scalars: Mapping[str, Any],
-    cell_scalars: Mapping[str, Any],
-    *,
-    sign_free: bool,
-    on_globe: bool,
-) -> tuple[GridSurface, dict[str, Any]]:
-    """Check arrays; return the surface and the arguments of a field. Only one late step is read.
+def grid_nodes(arrays: GridArrays, own: Checked, *, on_globe: bool) -> CheckedNodes:
+    """Check the arrays of a grid. Of those that are read late, one step is read.
 
-    The arguments are described at :meth:`flowtex.FlowField.from_arrays`.
+    The arrays are described at :meth:`flowtex.FlowField.from_arrays`; ``own`` has the velocity and
+    the scalars without gaps.
 
     Raises
     ------
@@ -217,19 +210,19 @@ def grid_nodes(
         When shapes or types do not fit together, values exceed the range of computations, or fewer
         nodes than a surface needs have data. The error lists all faults.
     """
-    _check_mapping(scalars)
-    p, masked_points = as_numbers("points", node_positions(points))
-    v, masked_velocity = as_numbers("velocity", first_step(velocity))
-    late, in_memory = _late_and_in_memory(scalars)
-    on_cells = _with_gaps_by_name("cell_scalars", cell_scalars)
+    _check_mapping(own.scalars)
+    p, masked_points = as_numbers("points", node_positions(arrays.points))
+    v, masked_velocity = as_numbers("velocity", first_step(own.velocity))
+    late, in_memory = _late_and_in_memory(own.scalars)
+    on_cells = _with_gaps_by_name("cell_scalars", arrays.cell_scalars)
     mask = None
-    if valid is not None:
-        mask = with_gaps("valid", valid)
-    count = _step_count(velocity, v)
-    faults = shape_faults(p, v, count, times, mask, periodic, in_memory)
+    if arrays.valid is not None:
+        mask = with_gaps("valid", arrays.valid)
+    count = _step_count(own.velocity, v)
+    faults = shape_faults(p, v, count, own.times, mask, arrays.periodic, in_memory)
     cells = tuple(max(n - 1, 0) for n in p.shape[:2])
-    faults = faults or cell_faults(cells, count, on_cells, scalars)
-    if sign_free:
+    faults = faults or cell_faults(cells, count, on_cells, own.scalars)
+    if arrays.sign_free:
         faults += _time_faults(v)
     raise_faults(faults)
     if v.ndim == 3:
@@ -238,25 +231,30 @@ def grid_nodes(
     p = _copied_in_space(p)
     v = _copied_in_space(v)
     ok = _usable_nodes(p, v, ~(masked_points | masked_velocity), mask)
-    if sign_free:
-        v = with_equal_ends(v)
     shape = p.shape[:2]
     data: dict[str, Any] = _scalars_of_nodes(in_memory, on_cells, shape)
-    p, v, ok, data, closed = close_axes(p, v, ok, data, periodic)
+    if arrays.sign_free:
+        v = with_equal_ends(v)
+    p, v, ok, data, closed = close_axes(p, v, ok, data, arrays.periodic)
     surface = GridSurface(p, ok, closed, on_globe=on_globe)
-    if sign_free:
-        v = oriented(np.where(ok[..., None], v[0], 0.0), ok, closed)
-        v = with_equal_ends(v[None], closed, surface.poles)
+    if arrays.sign_free:
+        v = _oriented_on(surface, v)
     v[:, ~ok] = 0.0
     closed_as_nodes = partial(_closed, np.greater(ok.shape, shape).tolist())
     steps: Any = v
-    if isinstance(velocity, LazySteps):
-        steps = velocity.map(partial(_moving, ok, closed_as_nodes))
+    if isinstance(own.velocity, LazySteps):
+        steps = own.velocity.map(partial(_moving, ok, closed_as_nodes))
     all_scalars = data | _mapped(late, closed_as_nodes)
-    ordered = {name: all_scalars[name] for name in (*scalars, *on_cells)}
-    nodes: dict[str, Any] = {"points": surface.points, "has_position": surface.has_position}
-    nodes |= {"velocity": steps, "valid": ok, "periodic": closed, "scalars": ordered}
-    return surface, nodes
+    ordered = {name: all_scalars[name] for name in (*own.scalars, *on_cells)}
+    position = surface.has_position
+    return CheckedNodes(surface, steps, ordered, position, arrays.sign_free, arrays.section)
+
+
+def _oriented_on(surface: GridSurface, v: Floats) -> Floats:
+    """Return a sign-free velocity (1, J, I, 3) that agrees between neighbours where it can."""
+    ok = surface.valid
+    one = oriented(np.where(ok[..., None], v[0], 0.0), ok, surface.periodic)
+    return with_equal_ends(one[None], surface.periodic, surface.poles)
 
 
 def _time_faults(v: Floats) -> list[str]:

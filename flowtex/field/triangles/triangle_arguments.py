@@ -12,6 +12,8 @@ from numpy.typing import ArrayLike
 
 from flowtex._util.array_types import AnyArray, Bools, Floats, Indices
 from flowtex.errors import FieldError, notify, raise_faults
+from flowtex.field.checked_nodes import CheckedNodes
+from flowtex.field.field_arrays import TriangleArrays
 from flowtex.field.steps import LazySteps, Steps, first_step, map_steps
 from flowtex.field.triangles.triangle_nodes import (
     edges_of,
@@ -27,6 +29,7 @@ from flowtex.field.triangles.triangle_nodes import (
 )
 from flowtex.field.triangles.triangle_surface import TriangleSurface
 from flowtex.field.validation import (
+    Checked,
     as_numbers,
     cell_faults,
     finite_nodes,
@@ -42,21 +45,14 @@ READING_PARTS = 4
 
 
 def triangle_nodes(
-    points: ArrayLike,
-    triangles: ArrayLike,
-    velocity: Any,
-    times: Floats | None,
-    valid: ArrayLike | None,
-    scalars: Mapping[str, Any],
-    cell_scalars: Mapping[str, Any],
-    *,
-    on_globe: bool,
-) -> Generator[None, None, tuple[TriangleSurface, dict[str, Any]]]:
-    """Check arrays; return the surface and the arguments of a field whose nodes are a row, (1, N).
+    arrays: TriangleArrays, own: Checked, *, on_globe: bool
+) -> Generator[None, None, CheckedNodes]:
+    """Check the arrays of triangles, whose nodes become a row, (1, N).
 
     It yields before each of the :data:`READING_PARTS`, so that they can be shown and cancelled.
     Nodes at one place are joined, but at sharp edges each face has its own; parts that cannot be
-    drawn are left out. The arguments are described at :meth:`flowtex.FlowField.from_triangles`.
+    drawn are left out. The arrays are described at :meth:`flowtex.FlowField.from_triangles`;
+    ``own`` has the velocity and the scalars without gaps.
 
     Raises
     ------
@@ -65,15 +61,15 @@ def triangle_nodes(
         triangle has three nodes with data. The error lists all faults of the arrays.
     """
     yield
-    p, masked_points = as_numbers("points", points)
-    v, masked = as_numbers("velocity", first_step(velocity))
-    corners = _corners_of(triangles)
-    mask = _mask_of(valid)
-    arrays = _first_values("scalars", scalars)
-    on_cells = _first_values("cell_scalars", cell_scalars)
-    count = _step_count(velocity, v)
-    faults = _faults(p, corners, v, count, times, mask, arrays)
-    raise_faults(faults or cell_faults((len(corners),), count, on_cells, scalars))
+    p, masked_points = as_numbers("points", arrays.points)
+    v, masked = as_numbers("velocity", first_step(own.velocity))
+    corners = _corners_of(arrays.triangles)
+    mask = _mask_of(arrays.valid)
+    at_nodes = _first_values("scalars", own.scalars)
+    on_cells = _first_values("cell_scalars", arrays.cell_scalars)
+    count = _step_count(own.velocity, v)
+    faults = _faults(p, corners, v, count, own.times, mask, at_nodes)
+    raise_faults(faults or cell_faults((len(corners),), count, on_cells, own.scalars))
     p = three_components(p)
     v = three_components(v)
     v = v.reshape(-1, 1, len(p), 3)
@@ -84,9 +80,9 @@ def triangle_nodes(
         v = np.where(ok[:, None], v, np.nan)
     raise_faults(range_faults(p[None], v, ok[None]))
     steps: Steps = v
-    if isinstance(velocity, LazySteps):
-        steps = velocity.map(partial(_row, ok))
-    data = _rows(scalars, arrays, len(p))
+    if isinstance(own.velocity, LazySteps):
+        steps = own.velocity.map(partial(_row, ok))
+    data = _rows(own.scalars, at_nodes, len(p))
     yield
     drawn, pairs, crosses = _usable(p, corners.astype(np.intp, copy=False))
     solid = _rows_of(corners, drawn)
@@ -100,9 +96,8 @@ def triangle_nodes(
         steps = placed.means(steps)
         data = {name: placed.means(nodal) for name, nodal in data.items()}
     steps = map_steps(steps, partial(_at_rest, ~surface.valid[0]))
-    data |= _rows(cell_scalars, on_cells, len(corners), drawn)
-    nodes = {"points": surface.points, "triangles": surface.triangles, "valid": surface.valid}
-    return surface, {**nodes, "velocity": steps, "scalars": data}
+    data |= _rows(arrays.cell_scalars, on_cells, len(corners), drawn)
+    return CheckedNodes(surface, steps, data, triangles=surface.triangles)
 
 
 def _mask_of(valid: ArrayLike | None) -> Bools | None:

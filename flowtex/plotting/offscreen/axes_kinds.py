@@ -19,9 +19,11 @@ from numpy.typing import ArrayLike
 from flowtex._util.array_types import AnyArray, Floats
 from flowtex.errors import FieldError
 from flowtex.field import FlowField
-from flowtex.field.derived.quantities import DERIVED, derived_unit
+from flowtex.field.derived.kinds import DERIVED
+from flowtex.field.derived.quantities import derived_unit
 from flowtex.field.earth.map_lines import MOST_LINES, STEPS
 from flowtex.field.earth.projection import DEGREE, EARTH_RADIUS, Projection
+from flowtex.field.scalars import Scalars
 from flowtex.field.steps import LazySteps
 from flowtex.scene.options import SPEED
 
@@ -397,7 +399,7 @@ class AxesScales:
             velocity=velocity,
             valid=valid,
             has_position=has_position,
-            scalars={SPEED: field.speed, **field.scalars},
+            scalars=Scalars({SPEED: field.speed, **field.scalars}),
             units={SPEED: field.unit_of(SPEED), **field.units},
             formula=None,
             section=None,
@@ -435,7 +437,7 @@ def with_polar_scalars(field: FlowField, frame: Floats, name: str | None) -> Flo
     rows, columns = field.shape  # the plane may have one more line, which closes it
     values = np.stack([np.asarray(step)[:rows, :columns] for step in plane.derive(name)])
     units = {**field.units, name: derived_unit(name, field)}
-    return replace(field, scalars={**field.scalars, name: values}, units=units)
+    return field.same_flow(scalars={**field.scalars, name: values}, units=units)
 
 
 def _missed(values: Floats) -> FieldError:

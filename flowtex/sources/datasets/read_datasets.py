@@ -22,12 +22,12 @@ from flowtex._util.arrays import is_nonzero
 from flowtex.errors import FieldError
 from flowtex.field import units
 from flowtex.field.dates import as_seconds
-from flowtex.field.derived.quantities import magnitude_label
 from flowtex.field.earth.projection import GLOBE
-from flowtex.field.field_arrays import GridArrays, TriangleArrays
+from flowtex.field.field_arrays import GridArrays, SourceArrays, TriangleArrays
 from flowtex.field.options import OF_MESHES, FieldOptions
 from flowtex.field.steps import LazySteps, examined_steps
 from flowtex.field.uncertainty import spread_name
+from flowtex.field.vector_names import magnitude_label
 from flowtex.remedies import Remedy
 from flowtex.sources.datasets import labels, select
 from flowtex.sources.datasets.axes import (
@@ -76,7 +76,7 @@ MOST_SEARCHED = 200
 
 def read_datasets(
     data: Any, options: FieldOptions, *, name: str = "", regions: bool = False
-) -> GridArrays | TriangleArrays | Regions:
+) -> SourceArrays | Regions:
     """Read the arrays of a field from datasets.
 
     Parameters
@@ -125,7 +125,7 @@ def read_datasets(
             )
         scalars = _scalars(flow)
         words = _words(flow, scalars, name)
-        arrays: GridArrays | TriangleArrays | Regions | None = None
+        arrays: SourceArrays | Regions | None = None
         if regions and flow.mesh is None and spread is None:
             arrays = _regions(flow, scalars, projection, words)
         if arrays is None:
@@ -190,7 +190,7 @@ def _whole(
     words: dict[str, Any],
     spread: Callable[[int], Floats] | None,
     uncertainty: Any,
-) -> GridArrays | TriangleArrays:
+) -> SourceArrays:
     count = flow.drawn.steps
     record = flow.record
     nodes, arguments = placed

@@ -19,11 +19,11 @@ from numpy.typing import ArrayLike
 from flowtex._util.array_types import Bools, Floats
 from flowtex._util.arrays import is_nonzero
 from flowtex.errors import FieldError
-from flowtex.field.derived.quantities import component_name
-from flowtex.field.field_arrays import NOTABLE_SHARE, GridArrays, TriangleArrays
+from flowtex.field.field_arrays import NOTABLE_SHARE, GridArrays, SourceArrays, TriangleArrays
 from flowtex.field.folds import MOST_NODES
 from flowtex.field.grids.grid_surface import GridSurface
 from flowtex.field.options import OF_EARTH, OF_UNITS, FieldOptions
+from flowtex.field.vector_names import component_name
 from flowtex.sources.meshes import parts, series, volume
 from flowtex.sources.meshes.cuts import Cut, check_cut, contour_of, slice_of, surface_sheet
 from flowtex.sources.meshes.turned_vectors import MeshVelocity
@@ -44,7 +44,7 @@ NUMBERS = "vtkOriginal"
 FLAT = 1e-10
 
 
-def read_meshes(mesh: Any, options: FieldOptions, *, name: str = "") -> GridArrays | TriangleArrays:
+def read_meshes(mesh: Any, options: FieldOptions, *, name: str = "") -> SourceArrays:
     """Read the arrays for :meth:`FlowField.from_pyvista` from a mesh or a series of them.
 
     Parameters

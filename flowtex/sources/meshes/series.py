@@ -19,7 +19,11 @@ import numpy as np
 from flowtex._util.arrays import is_nonzero
 from flowtex.errors import FieldError
 from flowtex.field.dates import ENDS
-from flowtex.field.field_arrays import GridArrays, Reading, ReadingStep, TriangleArrays
+from flowtex.field.field_arrays import (
+    Reading,
+    ReadingStep,
+    SourceArrays,
+)
 from flowtex.field.interpolation import at_moment, steps_around
 from flowtex.field.options import FieldOptions
 from flowtex.remedies import Remedy
@@ -279,7 +283,7 @@ def _bracket(time: float | str, times: Sequence[float], owner: str) -> tuple[flo
     raise FieldError(f"time is {time!r}; {owner} the times {known}")
 
 
-def interpolated(arrays: GridArrays | TriangleArrays, time: float) -> GridArrays | TriangleArrays:
+def interpolated(arrays: SourceArrays, time: float) -> SourceArrays:
     """Return the arrays of two times as those of a time between them."""
     times = np.asarray(arrays.times, dtype=np.float64)
     moment = steps_around(times, time)

@@ -19,7 +19,7 @@ import numpy as np
 from flowtex._util.arguments import near_names
 from flowtex._util.array_types import AnyArray, Bools, Floats, Indices
 from flowtex.errors import FieldError
-from flowtex.field.derived.quantities import is_velocity
+from flowtex.field.vector_names import is_velocity
 from flowtex.remedies import Remedy
 from flowtex.sources.datasets.masks import DRAW_ALL, undeclared_fill
 from flowtex.sources.notices import Record

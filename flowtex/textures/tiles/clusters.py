@@ -23,6 +23,7 @@ from flowtex._util.forks import ProcessLock
 from flowtex._util.progress import finish
 from flowtex.errors import FieldError
 from flowtex.field import FlowField
+from flowtex.field.scalars import Scalars
 from flowtex.field.steps import Steps, map_steps
 from flowtex.field.triangles.triangle_nodes import (
     connected_items,
@@ -161,7 +162,8 @@ class Clusters:
         cells = self.cells[cells[is_ahead]]
         # A cell has the value of one of those in its place: means may be of none, such as a mark.
         flat = {name: self.field.scalars[name][:, :, cells] for name in field.on_cells}
-        field = replace(field, triangles=corners, scalars={**field.scalars, **flat})
+        scalars = Scalars({**field.scalars, **flat})
+        field = replace(field, triangles=corners, scalars=scalars)
         level = Clusters(
             whole=self.whole,
             field=field,
@@ -527,15 +529,18 @@ def _averaged(field: FlowField, number: Indices, places: Indices, triangles: Ind
     def means(steps: Steps) -> Steps:
         return map_steps(steps, lambda step: known_means(step[0], summed)[None])
 
+    scalars: Scalars[Steps] = Scalars()
+    for name, steps in field.scalars.items():
+        if name in field.on_cells:
+            scalars[name] = steps
+        else:
+            scalars[name] = means(steps)
     return replace(
         field,
         points=known_means(field.points[0], placed)[None, places],
         velocity=means(field.velocity),
         valid=np.ones((1, count), dtype=bool),
-        scalars={
-            name: steps if name in field.on_cells else means(steps)
-            for name, steps in field.scalars.items()
-        },
+        scalars=scalars,
         triangles=triangles,
     )
 

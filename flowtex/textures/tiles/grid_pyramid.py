@@ -18,6 +18,7 @@ import numpy as np
 from flowtex._util.array_types import Bools, Floats, Floats32, Indices
 from flowtex._util.arrays import norm
 from flowtex.field import FlowField
+from flowtex.field.scalars import Scalars
 from flowtex.field.steps import Nodes, Steps, map_steps
 from flowtex.textures.geometry import SurfaceGeometry
 from flowtex.textures.texture_set import TextureSet
@@ -353,7 +354,7 @@ class GridPyramid(Pyramid):
             valid=nodes.valid,
             periodic=periodic,
             has_position=nodes.has_position,
-            scalars=nodes.scalars,
+            scalars=Scalars(nodes.scalars),
             formula=None,
         )
 

@@ -22,6 +22,8 @@ from numpy.typing import NDArray
 from flowtex._util.array_types import Bools, Floats, Floats32, Indices
 from flowtex._util.arrays import bounds
 from flowtex.field import FlowField
+from flowtex.field.scalars import Scalars
+from flowtex.field.steps import Steps
 from flowtex.field.triangles.triangle_nodes import corner_ends
 from flowtex.textures.texture_set import TextureSet
 from flowtex.textures.tiles.blocks import enlarging, has_roughness, triangle_roughness
@@ -370,14 +372,18 @@ def _window(level: Clusters, members: Indices) -> tuple[FlowField, Indices]:
     cells = level.cells[members]
     number = np.full(field.shape[1], -1, dtype=np.intp)
     number[nodes] = np.arange(len(nodes))
+    scalars: Scalars[Steps] = Scalars()
+    for name, steps in field.scalars.items():
+        if name in field.on_cells:
+            scalars[name] = steps[:, :, cells]
+        else:
+            scalars[name] = steps[:, :, nodes]
     part = replace(
         field,
         points=field.points[:, nodes],
         velocity=field.velocity[:, :, nodes],
         valid=np.ones((1, len(nodes)), dtype=bool),
-        scalars={
-            k: s[:, :, cells if k in field.on_cells else nodes] for k, s in field.scalars.items()
-        },
+        scalars=scalars,
         triangles=number[triangles],
     )
     return part, number

@@ -14,7 +14,9 @@ from triangle_meshes import random_plane, soup, sphere, surface_of
 from flowtex import FlowField
 from flowtex._util.progress import Stopped, stoppable
 from flowtex.errors import FieldError
+from flowtex.field.field_arrays import TriangleArrays
 from flowtex.field.triangles.triangle_arguments import READING_PARTS, triangle_nodes
+from flowtex.field.validation import in_own_units
 from flowtex.scene.fields import MOST_SAMPLED, share_field
 
 SQUARE = np.array([[0.0, 0], [1, 0], [1, 1], [0, 1]])
@@ -68,7 +70,8 @@ def test_nodes_that_are_not_known_blank_their_triangles() -> None:
 
 
 def test_reading_triangles_can_be_shown_and_cancelled() -> None:
-    reading = triangle_nodes(SQUARE, HALVES, EVEN, None, None, {}, {}, on_globe=False)
+    arrays = TriangleArrays(points=SQUARE, triangles=HALVES, velocity=EVEN)
+    reading = triangle_nodes(arrays, in_own_units(arrays, axes=1), on_globe=False)
     assert len(list(reading)) == READING_PARTS
     with pytest.raises(Stopped), stoppable(lambda: True):
         FlowField.from_triangles(SQUARE, HALVES, EVEN)

@@ -236,7 +236,9 @@ def _value_faults(
 
 def _speed(found: FlowField, step: int) -> tuple[Floats, str]:
     """Return the speed that legends show, and its unit."""
-    steps = found.scalars.get("speed", found.speed)
+    steps = found.speed
+    if "speed" in found.scalars:
+        steps = found.scalars["speed"]
     return np.asarray(steps[step])[found.valid], found.unit_of("speed")
 
 
