@@ -17,8 +17,7 @@ from numpy.typing import ArrayLike
 from flowtex._util.progress import finish
 from flowtex.errors import notify
 from flowtex.field.checked_nodes import CheckedNodes
-from flowtex.field.derived.kinds import LONG_NAMES
-from flowtex.field.derived.quantities import derive, derived_unit
+from flowtex.field.derived.quantities import derive, with_derived
 from flowtex.field.earth.projection import Projection
 from flowtex.field.field_arrays import GridArrays, SourceArrays, TriangleArrays
 from flowtex.field.field_data import FieldData
@@ -742,11 +741,7 @@ class FlowField(FieldData):
         >>> sorted(field.with_derived("shear").scalars)
         ['shear', 'vorticity']
         """
-        return self.same_flow(
-            scalars={**self.scalars, name: derive(self, name, horizon)},
-            units={**self.units, name: derived_unit(name, self)},
-            long_names={**self.long_names, name: LONG_NAMES.get(name, name)},
-        )
+        return with_derived(self, name, horizon)
 
     def at(self, x: float, y: float, z: Any = None, time: Any = None) -> PointValues | None:
         """Return the values at a point and a time; ``None`` outside the data.

@@ -99,8 +99,7 @@ class FlowHandle(AppearanceAttributes):
             **{"name": f"flowtex {next(_count)}", **actor_options},
         )
         bar = FlowBar(plotter, use_flow_mapper(actor, mesh), bar_options)
-        surface = FlowSurface(actor, renderer, scene.textures, scene.settings, scene.pyramid)
-        surface.set_moment(*scene.moment)
+        surface = FlowSurface(actor, renderer, scene.drawn, scene.settings)
         end = scene.observe(self._changed)
         self.scene = scene
         self.actor = actor
@@ -232,7 +231,7 @@ class FlowHandle(AppearanceAttributes):
             When the scene cannot be traced; it is closed, and the present one stays.
         """
         try:
-            textures = scene.textures
+            drawn = scene.drawn
         except BaseException:
             scene.close()
             raise
@@ -240,8 +239,7 @@ class FlowHandle(AppearanceAttributes):
         self.scene = scene
         self._shown_time = scene.time
         self._end()
-        self.surface.show(textures, scene.pyramid, scene.moment)
-        self.surface.set_moment(*scene.moment)
+        self.surface.show(drawn)
         self._map.show(scene)
         self._structure.show(scene)
         self._show_appearance("lighting")
@@ -294,12 +292,11 @@ class FlowHandle(AppearanceAttributes):
         if affects == "uniform":  # perhaps the time: textures at the steps around it, and colours
             if not self.field.steady and self._shown_time != self.scene.time:
                 self._shown_time = self.scene.time
-                self.surface.set_moment(*self.scene.moment)
-                self.surface.write_scalars()
+                self.surface.show(self.scene.drawn)
         elif affects == "appearance":
             self._show_appearance()
         else:
-            self.surface.set_textures(self.scene.textures, self.scene.pyramid)
+            self.surface.show(self.scene.drawn)
             self._map.show(self.scene)
             self._show_bar()  # which an image has not by default
         self._draw()
@@ -350,11 +347,7 @@ class FlowHandle(AppearanceAttributes):
         mapper.ends = Ends(self.scene.scalar_limits, self.scene.scalar_range(name), are_chosen)
         self.bar.fit()
         mapper.SelectColorArray(name)
-        self.surface.set_scalars(
-            name,
-            lambda field: self.scene.scalar(name, field),
-            on_cells=name in self.scene.field.on_cells,
-        )
+        self.surface.show(self.scene.drawn)
 
     def _show_bar(self) -> None:
         """Show the bar of the colours, or remove it where the scene has none."""

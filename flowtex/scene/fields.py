@@ -17,9 +17,6 @@ from flowtex._util.array_types import AnyArray
 from flowtex._util.cache import ByteCache, WeakCache, digest
 from flowtex.errors import FieldError
 from flowtex.field import FlowField
-from flowtex.field.derived.kinds import DERIVED
-from flowtex.field.derived.quantities import with_vector_scalar
-from flowtex.field.finer import finest_of
 from flowtex.field.options import OF_MESHES, FieldOptions
 from flowtex.field.steps import LazySteps
 from flowtex.field.uncertainty import nodal_steps, with_uncertainty
@@ -44,17 +41,6 @@ _fields: WeakCache[FlowField] = WeakCache()
 MOST_SAMPLED = 2000
 #: Attributes that are compared as texts, or not at all.
 APART = {"formula", "start", "section", "reading"}
-
-
-def with_scalars(field: FlowField, name: str | None) -> FlowField:
-    """Return the field with the scalar of its colours, if that is derived from vectors."""
-    if name is None or name in ("speed", *field.scalars) or finest_of(field) is not None:
-        return field
-    if name not in DERIVED:
-        return _fields.get(name, lambda: with_vector_scalar(field, name), owner=field)
-    if field.sign_free:
-        return field
-    return _fields.get(name, lambda: field.with_derived(name), owner=field)
 
 
 def share_field(field: FlowField) -> FlowField:

@@ -28,14 +28,15 @@ from flowtex.errors import FieldError, notify
 from flowtex.field import FlowField
 from flowtex.field.dates import time_within
 from flowtex.field.derived.kinds import SIGNED
-from flowtex.field.derived.quantities import steps_of
+from flowtex.field.derived.shared import shared_steps, with_scalars
 from flowtex.field.folds import FOLDED, mixes_at_folds
 from flowtex.field.interpolation import at_moment, steps_around
 from flowtex.field.options import FieldOptions, option_names
 from flowtex.field.steps import LazySteps, Steps
 from flowtex.rendering.cpu.shade import mean_colours
+from flowtex.rendering.drawn_flow import ColourValues, DrawnFlow
 from flowtex.rendering.structure import STRUCTURE, Structure, check_structure, shared_structure
-from flowtex.scene.fields import is_tiled, read_field, share_field, with_scalars
+from flowtex.scene.fields import is_tiled, read_field, share_field
 from flowtex.scene.options import ROBUST, SPEED, Appearance, Options
 from flowtex.settings import TABLE, Affects, Settings, SettingsError, Signal
 from flowtex.textures.images import as_picture, load_image
@@ -331,6 +332,15 @@ class Scene:
                 self._textures = textures
         return textures
 
+    @property
+    def drawn(self) -> DrawnFlow:
+        """What is drawn at the time that is shown."""
+        name = self.scalar_name
+        colours = None
+        if name is not None:
+            colours = ColourValues(name, name in self.field.on_cells, self.moment)
+        return DrawnFlow(self.textures, self.pyramid, self.moment, colours)
+
     def set_image(self, image: Any) -> None:
         """Lay an image, as :class:`Appearance` has it, in place of the noise on the surface.
 
@@ -393,7 +403,7 @@ class Scene:
 
     def scalar_steps(self, name: str, field: FlowField | None = None) -> Steps:
         """Values at all times, (T or 1, J, I); :meth:`scalar` has the parameters."""
-        return steps_of(with_scalars(field or self.field, name), name)
+        return shared_steps(field or self.field, name)
 
     def _limits(self, appearance: Appearance) -> tuple[float, float]:
         """Return the values at the ends of the colour map of an appearance."""

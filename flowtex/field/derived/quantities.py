@@ -16,7 +16,7 @@ from flowtex._util.array_types import Floats
 from flowtex._util.arrays import norm
 from flowtex.errors import FieldError
 from flowtex.field.derived.gradient import NodeGradient, node_gradient, true_velocity
-from flowtex.field.derived.kinds import DERIVED, FOLLOWED
+from flowtex.field.derived.kinds import DERIVED, FOLLOWED, LONG_NAMES
 from flowtex.field.field_data import Data, FieldData
 from flowtex.field.finer import check_derivable, finest_of
 from flowtex.field.steps import LazySteps, Steps, map_steps, scaled_steps
@@ -39,6 +39,15 @@ def derive(field: FieldData, name: str, horizon: float | None = None) -> Steps:
     if horizon is not None or name in FOLLOWED:
         return followed_steps(name, field, horizon)
     return derived_steps(name, field)
+
+
+def with_derived(field: Data, name: str, horizon: float | None = None) -> Data:
+    """Return a field with a scalar of :func:`derive` among its scalars."""
+    return field.same_flow(
+        scalars={**field.scalars, name: derive(field, name, horizon)},
+        units={**field.units, name: derived_unit(name, field)},
+        long_names={**field.long_names, name: LONG_NAMES.get(name, name)},
+    )
 
 
 def derived_steps(name: str, field: FieldData) -> Steps:

@@ -10,7 +10,7 @@ from __future__ import annotations
 import weakref
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 import pyvista as pv
@@ -20,8 +20,8 @@ from vtkmodules.vtkRenderingOpenGL2 import vtkShaderProgram
 
 from flowtex._util.array_types import Floats, Ints
 from flowtex.errors import notify
-from flowtex.field import FlowField
 from flowtex.rendering.arrow_seeds import ArrowSeeds, Seeds, in_tile, vertex_data
+from flowtex.rendering.drawn_flow import ColourValues, DrawnFlow
 from flowtex.rendering.mesh_levels import MeshLevels, Region, join, mesh_levels_of
 from flowtex.rendering.tile_choice import (
     TileView,
@@ -61,46 +61,31 @@ LOOK_INTERVAL_MS = 250  #: Time after which a window is drawn again while tiles 
 RIBBON = "flowtexRibbon"  #: Attribute of the vertices of a ribbon: piece and side.
 
 
-class Scalars(NamedTuple):
-    """Values that a function returns for a field, (J, I), as a point array of a name."""
-
-    name: str
-    values: Callable[[FlowField], Floats]
-    on_cells: bool
-
-    def write(self, textures: TextureSet, mesh: pv.PolyData) -> None:
-        """Write the values of a texture set's field to its mesh."""
-        geometry = textures.geometry
-        drawn = geometry.drawn_values(self.values(geometry.field), on_cells=self.on_cells)
-        mesh.point_data[self.name] = geometry.at_vertices(drawn, on_cells=self.on_cells)
+def write_colours(values: ColourValues, textures: TextureSet, mesh: pv.PolyData) -> None:
+    """Write the colour values of a texture set's field to its mesh, as a point array."""
+    geometry = textures.geometry
+    on_cells = values.on_cells
+    drawn = geometry.drawn_values(values.of(geometry.field), on_cells=on_cells)
+    mesh.point_data[values.name] = geometry.at_vertices(drawn, on_cells=on_cells)
 
 
 class FlowSurface:
     """Draws a flow by an actor with a :func:`surface_mesh` and by tiles, as settings say."""
 
-    def __init__(
-        self,
-        actor: pv.Actor,
-        renderer: Any,
-        textures: TextureSet,
-        settings: Settings,
-        pyramid: Pyramid | None = None,
-    ) -> None:
+    def __init__(self, actor: pv.Actor, renderer: Any, flow: DrawnFlow, settings: Settings) -> None:
         check_fork()
         note_thread(renderer.GetRenderWindow())
         self._actor = actor
         self._renderer = weakref.ref(renderer)
         self._settings = settings
-        self._base = FlowLayer(actor, renderer, textures, settings)
-        self._moment = (0, 0, 0.0)
-        self._scalars: Scalars | None = None
-        self._drawn: tuple[Any, ...] = ()
+        self._flow = flow
+        self._base = FlowLayer(actor, renderer, flow.textures, settings)
+        self._triangles: tuple[Any, ...] = ()  #: Those that are drawn: levels of each region.
         self._arrows = SurfaceArrows(renderer, settings)
         self._tiles: dict[TileKey, FlowLayer] = {}
-        if pyramid is None:
-            self._loader = None
-        else:
-            self._loader = self._loader_of(pyramid)
+        self._loader = self._loader_of(flow.pyramid)
+        self._base.set_moment(*flow.moment)
+        self._write_colours(self._base)
         #: Height in pixels for which tiles are chosen, where a frame is a draft of fewer, and that
         #: of the picture that it is a part of.
         self.full_height: int | None = None
@@ -134,25 +119,25 @@ class FlowSurface:
         """Whether tiles that the last frame has requested are on their way."""
         return self._loader is not None and self._loader.busy
 
-    def show(
-        self, textures: TextureSet, pyramid: Pyramid | None, moment: tuple[int, int, float]
-    ) -> None:
-        """Draw another flow from now on, at a moment of it, without scalars."""
-        self._moment = moment
-        self._scalars = None
-        self.set_textures(textures, pyramid)
+    def show(self, flow: DrawnFlow) -> None:
+        """Draw other textures, another moment or other colours of a flow, or another flow."""
+        old = self._flow
+        self._flow = flow
+        if not flow.has_textures_of(old):
+            self._show_textures(flow.textures)
+        self._base.set_moment(*flow.moment)
+        if flow.colours != old.colours:
+            for layer in (self._base, *self._tiles.values()):
+                self._write_colours(layer)
 
-    def set_textures(self, textures: TextureSet, pyramid: Pyramid | None = None) -> None:
-        """Draw another texture set from now on, of the same flow or of another one."""
+    def _show_textures(self, textures: TextureSet) -> None:
+        """Draw a texture set, of the same flow or of another one, and its tiles."""
         self._drop(list(self._tiles))
         self._arrows.close()
         if self._loader is not None:
             self._loader.close()
-        if pyramid is None:
-            self._loader = None
-        else:
-            self._loader = self._loader_of(pyramid)
-        self._drawn = ()
+        self._loader = self._loader_of(self._flow.pyramid)
+        self._triangles = ()
         if textures.geometry.field is self._base.textures.geometry.field:
             set_attributes(self._actor.mapper.dataset, textures)
             self._base.set_textures(textures)
@@ -163,27 +148,7 @@ class FlowSurface:
         self._actor.mapper.SetInputData(surface_mesh(textures))
         self._base = FlowLayer(self._actor, self._renderer(), textures, self._settings)
         self._base.view = replace(view, anchor=np.zeros(3))
-        self._base.set_moment(*self._moment)
-        self.write_scalars()
-
-    def set_moment(self, before: int, after: int, between: float) -> None:
-        """Show the time between two destination times of the slices."""
-        self._moment = (before, after, between)
-        self._base.set_moment(*self._moment)
-
-    def set_scalars(
-        self, name: str, values: Callable[[FlowField], Floats], *, on_cells: bool = False
-    ) -> None:
-        """Write the values that a function returns for a field, (J, I), as a point array."""
-        self._scalars = Scalars(name, values, on_cells)
-        self.write_scalars()
-
-    def write_scalars(self) -> None:
-        """Write the values again after they have changed."""
-        # A new object, because pending tiles have the old values.
-        self._scalars = self._scalars and self._scalars._replace()
-        for layer in (self._base, *self._tiles.values()):
-            self._write_scalars(layer)
+        self._write_colours(self._base)
 
     def close(self) -> None:
         """Remove everything from the renderer, and free the graphics card's memory."""
@@ -198,14 +163,16 @@ class FlowSurface:
             self._loader.close()
         self._base.close()
 
-    def _write_scalars(self, layer: FlowLayer, written: Scalars | None = None) -> None:
-        if (scalars := self._scalars) is not None:
-            if scalars is not written:
-                scalars.write(layer.textures, layer.mesh)
-            if scalars.on_cells:
-                layer.flat_array = scalars.name
-            else:
-                layer.flat_array = None
+    def _write_colours(self, layer: FlowLayer, written: ColourValues | None = None) -> None:
+        """Write the colour values to the mesh of a layer that has those that are ``written``."""
+        colours = self._flow.colours
+        layer.flat_array = None
+        if colours is None:
+            return
+        if colours != written:
+            write_colours(colours, layer.textures, layer.mesh)
+        if colours.on_cells:
+            layer.flat_array = colours.name
 
     def _before_frame(self, renderer: pv.Renderer) -> None:
         """Choose tiles, shaders and triangles for the camera of the frame."""
@@ -224,7 +191,7 @@ class FlowSurface:
             if key is None:
                 continue
             layer.view = replace(self._base.view, anchor=layer.view.anchor)
-            layer.set_moment(*self._moment)
+            layer.set_moment(*self._flow.moment)
             layer.look()
         self._base.prepare(blank=is_covered)
         self._set_triangles(layers, shown, view)
@@ -244,7 +211,7 @@ class FlowSurface:
         loader = self._loader
         if loader is None:
             return {None: []}, False
-        before, after, between = self._moment
+        before, after, between = self._flow.moment
         steps = sorted({before, after if between else before})
         choices = choose_tiles(loader.pyramid, view)
         if self._base.deferred and any(not loader.get(k, steps) for k in wanted_tiles(choices)):
@@ -321,17 +288,22 @@ class FlowSurface:
             self._tiles[key] = self._layer_of(tile, tile.textures)
         return True
 
-    def _loader_of(self, pyramid: Pyramid) -> TileLoader:
-        """Return a loader that does not keep this surface alive."""
+    def _loader_of(self, pyramid: Pyramid | None) -> TileLoader | None:
+        """Return a loader of tiles, if there are any, that does not keep this surface alive."""
+        if pyramid is None:
+            return None
         reference = weakref.ref(self)
 
         def prepare(textures: TextureSet) -> tuple[Any, ...]:
             surface = reference()
             mesh = surface_mesh(textures)
-            if scalars := surface and surface._scalars:
-                scalars.write(textures, mesh)
+            colours = None
+            if surface is not None:
+                colours = surface._flow.colours
+            if colours is not None:
+                write_colours(colours, textures, mesh)
             _ = textures.unit, textures.cell, textures.critical_cell  # which are cached
-            return mesh, mesh_levels_of(textures), scalars
+            return mesh, mesh_levels_of(textures), colours
 
         def notify() -> None:
             surface = reference()
@@ -348,8 +320,8 @@ class FlowSurface:
         settings = self._settings
         take = tile.take
         layer = FlowLayer(actor, self._renderer(), textures, settings, take, mesh_levels)
-        self._write_scalars(layer, written)
-        if written is not self._scalars:
+        self._write_colours(layer, written)
+        if written != self._flow.colours:
             textures.geometry.field.forget()
         return layer
 
@@ -406,14 +378,14 @@ class FlowSurface:
             ragged = layer.mesh_levels.ragged
             regions[key] = Region(place.level, row, column, levels, ragged)
         drawn = tuple((key, region.levels.tobytes()) for key, region in regions.items())
-        if drawn == self._drawn:
+        if drawn == self._triangles:
             return
         joins: Sequence[Ints | None] = [None] * len(regions)
         if isinstance(self._base.mesh_levels, MeshLevels):
             joins = join(list(regions.values()), (blocks[0], blocks[1]), geometry.periodic)
         for (key, region), borders in zip(regions.items(), joins, strict=True):
             layers[key].set_triangles(region.levels, borders)
-        self._drawn = drawn
+        self._triangles = drawn
 
 
 class SurfaceArrows:
