@@ -65,8 +65,8 @@ nb_mime_priority_overrides = [("html", "text/html", 0)]
 
 templates_path = ["_templates"]
 autosummary_generate = True
-# On disks that do not tell capitals from small letters it would be the file of probe.
-autosummary_filename_map = {"flowtex.scene.probe.Probe": "flowtex.scene.probe.Probe-class"}
+# On disks that do not tell capitals from small letters it would be the file of movie.
+autosummary_filename_map = {"flowtex.Movie": "flowtex.Movie-class"}
 autodoc_typehints = "none"
 numpydoc_class_members_toctree = False
 numpydoc_show_class_members = False
