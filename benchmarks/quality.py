@@ -24,7 +24,17 @@ from typing import Any
 import numpy as np
 from rich.console import Console
 from rich.table import Table
-from scenes import Stage, colour_lic, grid_of, gyre_field, gyre_view, lic_actor, vortex_view
+from scenes import (
+    Stage,
+    colour_lic,
+    grid_of,
+    gyre_field,
+    gyre_view,
+    lic_actor,
+    stuart_field,
+    stuart_view,
+    vortex_view,
+)
 from scipy.ndimage import gaussian_filter
 from seams import across_lines, seams
 
@@ -67,6 +77,17 @@ def zoom() -> Figures:
             noise = np.random.default_rng(0).random(view.u.shape)
             passes = rlic.convolve(noise, view.u, -view.v, kernel=np.ones(25), iterations=2)
             found[f"rlic 2 x 25, zoom {z:g}"] = _all(255 * passes / 625, view)
+    return found
+
+
+def stuart() -> Figures:
+    """Streaks and grain around a vortex of Stuart's row over a thousandfold zoom."""
+    field = stuart_field(SIZE)
+    found = {}
+    for z in ZOOMS:
+        view = stuart_view(z, SIZE)
+        picture = flowtex.render(field, scalars=False, **view.options)
+        found[f"flowtex, zoom {z:g}"] = _all(picture, view)
     return found
 
 
@@ -334,6 +355,7 @@ def _moves(view: Any) -> dict[str, tuple[Any, Any, dict[str, Any]]]:
 
 SECTIONS = {
     "zoom": zoom,
+    "stuart": stuart,
     "aliasing": aliased,
     "camera": camera,
     "cloud": clouds,

@@ -78,6 +78,46 @@ def gyre_view(field: flowtex.FlowField, zoom: float, size: tuple[int, int]) -> V
     )
 
 
+#: Concentration of the vortices of Stuart's row, and how far the lines of its grid are bent.
+STUART, BENT = 0.35, 0.04
+
+
+def stuart(x: Floats, y: Floats) -> tuple[Floats, Floats]:
+    """Velocity of Stuart's row of vortices, which lie at y = 0 and multiples of 2 pi."""
+    scale = np.cosh(y) - STUART * np.cos(x)
+    return np.sinh(y) / scale, -STUART * np.sin(x) / scale
+
+
+def stuart_field(size: tuple[int, int], columns: int = 301, rows: int = 201) -> flowtex.FlowField:
+    """Sample one vortex of Stuart's row on a crooked grid with the shape of a picture."""
+    half = np.pi * np.array([1, size[1] / size[0]])
+    s, t = np.meshgrid(np.linspace(-1, 1, columns), np.linspace(-1, 1, rows))
+    bent_s = s + BENT * np.sin(3 * np.pi * t) * (1 - s**2)
+    bent_t = t + BENT * np.sin(3 * np.pi * s) * (1 - t**2)
+    x = half[0] * bent_s
+    y = half[1] * bent_t
+    return flowtex.FlowField.from_arrays(np.stack([x, y], -1), np.stack(stuart(x, y), -1))
+
+
+def stuart_view(zoom: float, size: tuple[int, int]) -> View:
+    """View the vortex of :func:`stuart_field`, and at a zoom a point beside its centre."""
+    width, height = size
+    pixel = 2 * np.pi / width / 0.92 / zoom
+    focus = (0.0, 0.0)
+    if zoom > 1:
+        focus = (1.1, 0.7)
+    x, y = np.meshgrid(
+        focus[0] + (np.arange(width) + 0.5 - width / 2) * pixel,
+        focus[1] - (np.arange(height) + 0.5 - height / 2) * pixel,
+    )
+    u, v = stuart(x, y)
+    far = BORDER * pixel
+    mask = (np.abs(x) < np.pi - far) & (np.abs(y) < np.pi * height / width - far)
+    mask[:BORDER], mask[-BORDER:], mask[:, :BORDER], mask[:, -BORDER:] = False, False, False, False
+    mask &= np.hypot(u, v) > SLOW
+    return View(x, y, u, v, pixel, mask, {"size": size, "zoom": zoom, "focus": focus})
+
+
 def _judged(x: Floats, y: Floats, u: Floats, v: Floats, pixel: float) -> NDArray[np.bool_]:
     mask = np.zeros(x.shape, dtype=bool)
     mask[BORDER:-BORDER, BORDER:-BORDER] = True

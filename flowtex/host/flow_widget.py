@@ -106,10 +106,13 @@ def _trait_of(row: Setting) -> CheckedTrait:
     return CheckedTrait(lambda _, value: row.check(value), row.default, row.text)
 
 
-class SettingTraits(traitlets.HasTraits):
-    """One trait for each setting."""
+def _class_of_settings() -> type[traitlets.HasTraits]:
+    """Return a class with one trait for each setting, as the table of settings names them."""
+    traits = {name: _trait_of(row) for name, row in TABLE.items()}
+    return type("SettingTraits", (traitlets.HasTraits,), traits)
 
-    locals().update({name: _trait_of(row) for name, row in TABLE.items()})
+
+SettingTraits: Any = _class_of_settings()
 
 
 class Host:
