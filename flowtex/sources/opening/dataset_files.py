@@ -46,6 +46,8 @@ DIGITS = re.compile(
 NUMBER = re.compile(r"[-+]?(\d{5,}|\d{1,3})(\.\d*)?")
 #: A unit of time of ICON: a date, with the share of the day behind its point.
 DAYS_AS_NUMBERS = "%Y%m%d"
+#: Errors of times that no calendar has.
+UNDATED = (ValueError, OverflowError, TypeError)
 GRIB = (".grib", ".grb", ".grib2", ".grb2")
 ZARR = (".zarr",)
 #: TELEMAC.
@@ -232,9 +234,27 @@ def _decoded(ds: xr.Dataset) -> xr.Dataset:
             ds[name].attrs["units"] = unit
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
-        with suppress(ValueError, OverflowError, TypeError):  # times of no calendar
-            ds = import_extra("xarray", "xarray").decode_cf(ds, decode_timedelta=False)
+        with suppress(*UNDATED):
+            unread = _without_calendar(ds)
+            xarray = import_extra("xarray", "xarray")
+            ds = xarray.decode_cf(ds, decode_times=unread, decode_timedelta=False)
     return _dated(with_declared_axes(ds))
+
+
+def _without_calendar(ds: xr.Dataset) -> dict[str, bool]:
+    """Return ``False`` for each variable with times of no calendar, as "hours since analysis"."""
+    xarray = import_extra("xarray", "xarray")
+    unread = {}
+    for name, variable in ds.variables.items():
+        if "since" not in str(variable.attrs.get("units", "")):
+            continue
+        try:
+            xarray.decode_cf(xarray.Dataset({name: variable}), decode_timedelta=False)
+        except UNDATED:
+            unread[str(name)] = False
+            if "bounds" in variable.attrs:
+                unread[str(variable.attrs["bounds"])] = False
+    return unread
 
 
 def _dated(ds: xr.Dataset) -> xr.Dataset:

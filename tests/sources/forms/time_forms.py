@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -124,6 +125,20 @@ def numbers_since(unit: str) -> Any:
     length = {"hours": 1.0, "days": 24.0, "minutes": 1 / 60}[unit.split()[0]]
     first = 24.0 if "2023" in unit else 0.0
     return retimed(series(), (HOURS + first) / length, units=unit), SERIES
+
+
+@variants(["nc", "undecoded"])
+def no_calendar_of_another_variable(kind: str, folder: Path) -> Any:
+    """HYCOM has ``tau``, in "hours since analysis", beside dates that are well declared."""
+    ds = series()
+    edges = {"bounds": "tau_bnds", "units": "hours since analysis"}
+    ds = ds.assign(tau=("time", HOURS, edges), tau_bnds=(("time", "side"), np.zeros((3, 2))))
+    ds.time.encoding["units"] = "hours since 2023-12-31"
+    path = folder / "hycom.nc"
+    ds.to_netcdf(path)
+    if kind == "nc":
+        return path, SERIES
+    return xr.load_dataset(path, decode_times=False), SERIES
 
 
 @variants(["h", "hours", "s", "days", "min"])
