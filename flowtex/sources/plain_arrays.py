@@ -25,6 +25,7 @@ from flowtex.field.validation import with_gaps
 from flowtex.remedies import Remedy, sentence
 from flowtex.sources.datasets.directions import BY_WORD, MEANINGS, MOST_RADIANS
 from flowtex.sources.datasets.directions import in_components as components_of
+from flowtex.sources.opening.column_levels import as_array, has_positions
 from flowtex.sources.read_fields import field_of_dataset
 
 if TYPE_CHECKING:
@@ -57,9 +58,14 @@ def is_plain(data: Any) -> bool:
 
 
 def are_labelled(data: Any) -> bool:
-    """Return whether data are two or four DataArrays by position: ``u, v`` or ``x, y, u, v``."""
+    """Return whether data are labelled arrays by position: ``u, v`` or ``x, y, u, v``.
+
+    They are DataArrays, or two tables whose rows and columns are positions.
+    """
     if not isinstance(data, tuple) or len(data) not in (2, 4):
         return False
+    if len(data) == 2 and all(map(has_positions, data)):
+        return True
     return all(type(item).__name__ == "DataArray" for item in data)
 
 
@@ -94,8 +100,11 @@ def read_arrays(data: Any, options: FieldOptions, scalars: Mapping[str, Any]) ->
 
 
 def read_labelled(data: tuple[Any, ...], options: FieldOptions) -> FlowField:
-    """Return the field of DataArrays ``u, v`` or ``x, y, u, v``, by their labels."""
+    """Return the field of arrays ``u, v`` or ``x, y, u, v``, by their labels."""
     *places, u, v = data
+    if has_positions(u):
+        u = as_array(u)
+        v = as_array(v)
     if None in (u.name, v.name) or u.name == v.name:
         u = u.rename("u")
         v = v.rename("v")

@@ -30,6 +30,7 @@ from flowtex.sources.datasets import is_dataset
 from flowtex.sources.datasets.coordinates import LATITUDE, LONGITUDE, OF_POINTS
 from flowtex.sources.models.trajectories import IDENTITIES, TRAJECTORY
 from flowtex.sources.opening import component_axes
+from flowtex.sources.opening.column_levels import has_positions, with_one_level
 from flowtex.sources.opening.column_names import component_names, split_unit
 from flowtex.sources.opening.column_values import column_numbers, without_units
 from flowtex.sources.reader_errors import check_count
@@ -108,6 +109,13 @@ def of_table(table: Any) -> xr.Dataset:
     FieldError
         When no columns are lon and lat, or x and y.
     """
+    is_counted = type(table.columns).__name__ == "RangeIndex"
+    if has_positions(table) and not is_counted:
+        first, *_, last = table.columns
+        raise FieldError(
+            f"the columns are positions, {first} to {last}, as of a table of one component; pass "
+            "the tables of both, as in flowtex.show(u, v)"
+        )
     frame, attributes = _plain(table)
     columns = [str(c) for c in frame.columns]
     pair = _pair(columns, LONGITUDE, LATITUDE) or _pair(columns, ACROSS, UPWARD)
@@ -189,6 +197,7 @@ def _plain(table: Any) -> tuple[Any, dict[str, dict[str, str]]]:
         frame = pandas.DataFrame(table.drop(columns=table.geometry.name))
         frame = frame.drop(columns=[n for n in names if n in frame])
         frame = frame.assign(**{names[0]: at.x, names[1]: at.y})
+    frame = with_one_level(frame)
     levels = [name for name in frame.index.names if name is not None]
     if levels:
         frame = frame.reset_index(levels)

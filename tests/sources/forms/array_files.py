@@ -155,6 +155,28 @@ def polars_table(folder: Path) -> Made:
 
 @supported(
     TABLES,
+    'pandas: `df.pivot(index="y", columns="x", values=["u", "v"])`',
+    "flowtex.show(table)",
+    "levels of the columns with numbers are positions or times; names in several levels are joined",
+)
+def pivoted_table(folder: Path) -> Made:
+    return {"table": table().pivot(index="y", columns="x", values=["u", "v"])}, in_plane(X, Y)
+
+
+@supported(
+    TABLES,
+    "two tables of pandas, whose rows and columns are positions",
+    "flowtex.show(u, v)",
+    "by the labels; rows are along y if the index has no name",
+)
+def tables_of_components(folder: Path) -> Made:
+    whole = table()
+    parts = [whole.pivot(index="y", columns="x", values=name) for name in "uv"]
+    return {"u": parts[0], "v": parts[1].iloc[::-1]}, in_plane(X, Y)
+
+
+@supported(
+    TABLES,
     "GeoPandas: points with columns u, v",
     "flowtex.show(gdf)",
     "longitude and latitude of `geometry`, reprojected by its CRS",

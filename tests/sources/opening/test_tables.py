@@ -217,3 +217,27 @@ def test_flags_of_vec_are_blank() -> None:
     drawn, valid = np.asarray(field.velocity[0]).reshape(-1, 3), field.valid.ravel()
     assert (field.length_unit, field.time_unit) == ("mm", "s")
     assert np.allclose(drawn[valid, :2], 1e3 * table[order][valid, 2:4])  # from m/s
+
+
+def test_columns_of_several_levels_are_positions_units_or_names() -> None:
+    """As of pivot with times in the columns, and of read_csv with two rows of header."""
+    x, y = map(np.ravel, np.meshgrid(np.arange(5.0), np.arange(4.0)))
+    u, v = plane(x, y)
+    steps = [pd.DataFrame({"time": t, "x": x, "y": y, "u": (1 + t) * u, "v": v}) for t in (0, 1)]
+    wide = pd.concat(steps).pivot(index=["y", "x"], columns="time", values=["u", "v"])
+    found = of_table(wide)
+    assert dict(found.sizes) == {"time": 2, "y": 4, "x": 5}
+    assert np.allclose(found.u[1], 2 * found.u[0])
+    assert np.allclose(found.v[0].values.ravel(), v)
+    columns = {("x", "mm"): x, ("y", "mm"): y, ("u", "m/s"): u, ("v", "m/s"): v}
+    assert of_table(pd.DataFrame(columns)).u.attrs["units"] == "m/s"
+    blank = [("x", "Unnamed: 0_level_1"), ("y", "Unnamed: 1_level_1")]
+    names = pd.MultiIndex.from_tuples([*blank, ("wind", "u"), ("wind", "v")])
+    found = of_table(pd.DataFrame(np.column_stack([x, y, u, v]), columns=names))
+    assert np.allclose(found.wind_u.values.ravel(), u)
+
+
+def test_a_table_of_one_component_names_the_remedy() -> None:
+    component = pd.DataFrame(np.ones((3, 4)), columns=pd.Index([0.0, 0.1, 0.2, 0.3], name="x"))
+    with pytest.raises(FieldError, match=r"positions, 0.0 to 0.3.*flowtex.show\(u, v\)"):
+        of_table(component)
