@@ -324,12 +324,26 @@ def ordered(array: xr.DataArray, record: Record, step: str) -> xr.DataArray:
 def _directions(p: Floats, axis: int) -> Floats:
     """Return unit differences of positions along an axis, one-sided beside unknown ones."""
     p = np.swapaxes(p, 0, axis)
-    ahead = np.full_like(p, np.nan)
-    behind = np.full_like(p, np.nan)
-    behind[1:] = ahead[:-1] = p[1:] - p[:-1]
-    both = np.where(np.isnan(ahead), behind, np.where(np.isnan(behind), ahead, ahead + behind))
-    length = np.linalg.norm(both, axis=-1, keepdims=True)
-    return np.swapaxes(both / np.where(length > 0, length, 1.0), 0, axis)
+    sides = np.full((len(p) + 3, *p.shape[1:]), np.nan)  # two before the first node, two after
+    sides[2:-2] = p[1:] - p[:-1]
+    behind = sides[1:-2]
+    ahead = sides[2:-1]
+    both = ahead + behind
+    both = np.where(np.isnan(ahead), _at_end(behind, sides[:-3]), both)
+    both = np.where(np.isnan(behind), _at_end(ahead, sides[3:]), both)
+    return np.swapaxes(_unit(both), 0, axis)
+
+
+def _at_end(near: Floats, far: Floats) -> Floats:
+    """Return the direction at the end of a line from its last two sides, which it turns past."""
+    near = _unit(near)
+    return np.where(np.isnan(far), near, 3 * near - _unit(far))
+
+
+def _unit(vectors: Floats) -> Floats:
+    """Return vectors of length one, or zero."""
+    length = np.linalg.norm(vectors, axis=-1, keepdims=True)
+    return np.asarray(vectors / np.where(length > 0, length, 1.0))
 
 
 def _size(dim: str, array: xr.DataArray, datasets: Sequence[xr.Dataset]) -> int:
