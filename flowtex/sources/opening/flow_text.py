@@ -116,9 +116,16 @@ def read_text(path: Path) -> xr.Dataset:
 
 def read_columns(path: Path) -> xr.Dataset:
     """Read a file of separated values, which may begin with other lines than the header."""
-    if has_preamble(path):
+    if has_preamble(path) or _begins_with_numbers(path):
         return read_text(path)
     return tables.read_csv(path)
+
+
+def _begins_with_numbers(path: Path) -> bool:
+    """Return whether the first line of a file has numbers in place of names."""
+    with path.open(encoding="utf-8-sig", errors="replace") as file:
+        first = next(filter(str.strip, file), "")
+    return _written(first) is not None
 
 
 def _flags(header: str, columns: Iterable[str]) -> tuple[str, ...]:

@@ -116,3 +116,15 @@ def test_numbers_are_components_only_with_their_siblings() -> None:
         **{"Points_0": "x", "Points_1": "y", "Points_2": "z"},
         **{"U_0": "u", "U_1": "v", "a[i]": "a_x", "a[j]": "a_y"},
     }
+
+
+def test_separated_values_without_a_header_are_read_in_their_order(tmp_path: Path) -> None:
+    """As vfplot takes them: integers of the place, and two components."""
+    across, up = map(np.ravel, np.meshgrid(np.arange(5), np.arange(4)))
+    path = tmp_path / "grid.csv"
+    np.savetxt(path, np.column_stack([across, up, 1 + up, 0.1 * across]), "%g", delimiter=", ")
+    field = FlowField.from_file(path)
+    assert field.shape == (4, 5)
+    assert np.allclose(field.velocity[0][..., 0].ravel(), 1 + up)
+    assert np.allclose(field.velocity[0][..., 1].ravel(), 0.1 * across)
+    assert "columns without a header are taken as x, y, u, v" in str(field.reading)
