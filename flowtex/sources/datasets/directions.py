@@ -38,6 +38,14 @@ MEANINGS = {
     "to": "a direction to which the flow goes, clockwise from north",
 }
 
+#: Names of speeds.
+SPEEDS = re.compile(
+    r"^(.*_)?(speed|magnitude|mag)$|^(w|c)?(spd|spe)\d*m?$|^ws\d*m?$|^wspd\w*$", re.I
+)
+#: Names of magnitudes, beside which an angle is that of the vector.
+MAGNITUDES = re.compile(r"(^|_)mag(nitude)?$", re.I)
+#: Words that tell a speed from its direction, of which the other words are the same.
+OF_SPEED = re.compile(r"(^|_)(speed|magnitude|mag|direction|dir|angle|from|to)(?=_|$)", re.I)
 #: Names of directions.
 TURNS = re.compile(r"(^|_)(direction|dir)(_\w+)?$|^w(d|dir)\w*$|^dir\w*$", re.I)
 #: Names of angles that are not names of directions.

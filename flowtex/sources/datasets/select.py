@@ -15,15 +15,20 @@ from typing import TYPE_CHECKING, Any
 
 from flowtex.errors import FieldError
 from flowtex.field import units
+from flowtex.field.vector_names import is_velocity
 from flowtex.remedies import Remedy
 from flowtex.sources.datasets.axes import FACES, NODES, horizontal_dims
 from flowtex.sources.datasets.curved import is_around, on_sphere
 from flowtex.sources.datasets.directions import (
+    ANGLE,
     ANGLES,
     BY_WORD,
     CARTESIAN,
+    MAGNITUDES,
     MEANINGS,
+    OF_SPEED,
     POLAR,
+    SPEEDS,
     SPHERICAL,
     TOWARDS,
     TURNS,
@@ -59,8 +64,10 @@ SECTION_PARTNERS = {"x": "z", "u": "w"}
 MODIFIERS = re.compile(
     r"\b(status_flag|standard_error|number_of_observations|detection_minimum)\b|quality_flag"
 )
-#: Names of speeds.
-SPEEDS = re.compile(r"^(.*_)?(speed|magnitude)$|^(w|c)?(spd|spe)\d*m?$|^ws\d*m?$|^wspd\w*$", re.I)
+#: A name that ends with the number of a component.
+NUMBERED = re.compile(r"^(.*[^0-9])[123]$")
+#: Ends of units of longitude and latitude.
+ON_EARTH = re.compile(r"_?(north|east|N|E)$")
 #: Names of components along polar coordinates, without the letters of the vector.
 RADIAL = re.compile(r"^[uvw]?_?(r|rad|radial)$|^radial_\w+$", re.I)
 AROUND = re.compile(
@@ -286,22 +293,37 @@ def _cartesian(arrays: Sequence[xr.DataArray], partners: Mapping[str, str]) -> l
 
 def _speeds(arrays: Sequence[xr.DataArray]) -> Iterator[Pair]:
     for speed in arrays:
-        standard = str(speed.attrs.get("standard_name", speed.name))
-        is_speed = SPEEDS.search(standard) and _is_velocity(speed) is not False
-        if "standard_name" in speed.attrs:
-            first = re.sub(r"_?speed$", "", standard)
-        else:
-            first = ""
-        for turn in arrays if is_speed else ():
-            named = str(turn.attrs.get("standard_name", turn.name))
-            unit = str(turn.attrs.get("units", ""))
-            is_angle = units.is_angle(unit) or units.parsed(unit) is None
-            is_turn = TURNS.search(named) and is_angle and turn.ndim == speed.ndim
-            if not is_turn or not named.startswith(first):
-                continue
+        if not SPEEDS.search(_standard(speed)) or _is_velocity(speed) is False:
+            continue
+        turns = [turn for turn in arrays if _turns(speed, turn)]
+        stem = OF_SPEED.sub("", _standard(speed))
+        own = [turn for turn in turns if OF_SPEED.sub("", _standard(turn)) == stem]
+        for turn in own or turns:
             meaning = convention(speed, turn)
             words = f"{speed.name} and {turn.name}, {meaning.words}"
-            yield Pair(speed, turn, "earth", words, 5, meaning.kind)
+            guessed = meaning.kind == ANGLE and not meaning.is_declared
+            yield Pair(speed, turn, "earth", words, 5, meaning.kind, guessed=guessed)
+
+
+def _turns(speed: xr.DataArray, turn: xr.DataArray) -> bool:
+    """Return whether a variable may be the direction of a speed."""
+    named = _standard(turn)
+    unit = str(turn.attrs.get("units", ""))
+    is_angle = units.is_angle(unit) or units.parsed(unit) is None
+    if not is_angle or turn.ndim != speed.ndim:
+        return False
+    if MAGNITUDES.search(_standard(speed)) and ANGLES.search(named):
+        return True
+    first = ""
+    if "standard_name" in speed.attrs:
+        first = re.sub(r"_?speed$", "", _standard(speed))
+    return bool(TURNS.search(named)) and named.startswith(first)
+
+
+def _standard(array: xr.DataArray) -> str:
+    """Return a standard name, or else a name, with underscores between its words."""
+    name = str(array.attrs.get("standard_name", array.name))
+    return re.sub(r"(?<=[a-z0-9])(?=[A-Z][a-z])", "_", name)
 
 
 def _curved(arrays: Sequence[xr.DataArray]) -> Iterator[Pair]:
@@ -525,6 +547,12 @@ def variable(datasets: Sequence[xr.Dataset], name: str) -> xr.DataArray:
 def _no_pair(datasets: Sequence[xr.Dataset]) -> str:
     """Return the text of the error for datasets without two components of a velocity."""
     arrays = [a for ds in datasets for a in ds.data_vars.values() if _may_be_component(a)]
+    numbered = _numbered(arrays)
+    if numbered:
+        return (
+            f"the components {', '.join(numbered)} have numbers, which do not tell along which "
+            f'axes they are; name the two on the surface, as in vectors="{",".join(numbered[:2])}"'
+        )
     for u, source in product(arrays, NAMES):
         text = _text(u, source)
         for _, rest, wanted in (*_partners(text, source), *_partners(text, source, FIRST_OF)):
@@ -542,5 +570,30 @@ def _no_pair(datasets: Sequence[xr.Dataset]) -> str:
         )
     return (
         "no two variables are recognised as the components of a velocity, in a unit such as m/s; "
-        f"the variables are {listed}. Name the components, as in u=..., v=..."
+        f"the variables are {listed}. Name the components, as in u=..., v=...{_with_angle(arrays)}"
     )
+
+
+def _numbered(arrays: Sequence[xr.DataArray]) -> list[str]:
+    """Return the names of the components of the first velocity that differ in a number."""
+    names: dict[str, list[str]] = {}
+    for array in arrays:
+        name = str(array.name)
+        match = NUMBERED.match(name)
+        if match and is_velocity(name, str(array.attrs.get("units", ""))):
+            names.setdefault(match[1], []).append(name)
+    return next((sorted(alike) for alike in names.values() if len(alike) > 1), [])
+
+
+def _with_angle(arrays: Sequence[xr.DataArray]) -> str:
+    """Return the arguments for a speed and its direction, if a variable may be one."""
+    lengths = []
+    turns = []
+    for array in arrays:
+        if not _is_angle(array):
+            lengths.append(array.name)
+        elif not ON_EARTH.search(str(array.attrs.get("units", ""))):
+            turns.append(array.name)
+    if not lengths or not turns:
+        return ""
+    return f', or a speed and its direction, as in vectors="{lengths[0]}", direction="{turns[0]}"'

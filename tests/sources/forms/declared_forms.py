@@ -163,6 +163,48 @@ def magnitude_and_angle(unit: str) -> Any:
     ), in_plane(X, Y)
 
 
+@form(says=r'if it is a direction to which .* components="to"')
+def magnitude_and_angle_alone() -> Any:
+    """As hvplot.vectorfield takes them, whose angle no attribute explains."""
+    return magnitude_and_angle("")[0].transpose("x", "y"), in_plane(X, Y)
+
+
+def speeds_of_radar() -> xr.Dataset:
+    """Return speeds and directions of two winds in one file, as of Sentinel-1."""
+    ds = earth(LON, LAT)
+    u, v = ds.u.values, ds.v.values
+    wind = {"units": "degree", "long_name": "Wind direction"}
+    found = ds.drop_vars(["u", "v"])
+    for name, turn in (("owiEcmwfWind", 40.0), ("owiWind", 0.0)):
+        found[f"{name}Speed"] = (("lat", "lon"), np.hypot(u, v), {"units": "m/s"})
+        found[f"{name}Direction"] = (("lat", "lon"), np.degrees(np.arctan2(-u, -v)) + turn, wind)
+    return found
+
+
+@form(error='owiEcmwfWindSpeed, .*; owiWindSpeed, .*as in u="owi', never="EcmwfWindSpeed and owiW")
+def speeds_of_two_winds() -> Any:
+    return speeds_of_radar()
+
+
+@form(options={"vectors": "owiWindSpeed,owiWindDirection"})
+def speed_of_one_of_two_winds() -> Any:
+    return speeds_of_radar(), on_earth(LON, LAT)
+
+
+@form(error='components V1, V2, V3 have numbers.*vectors="V1,V2"', never="u1")
+def numbered_components() -> Any:
+    """As of ENLIL, whose axes are radius, colatitude and longitude."""
+    ds = lab(X, Y, units="m/s").rename(u="V1", v="V2")
+    return ds.assign(V3=0 * ds.V1.assign_attrs(units="m/s"))
+
+
+@form(error='or a speed and its direction, as in vectors="hs", direction="thq"')
+def height_and_direction_of_waves() -> Any:
+    ds = lab(X, Y)
+    parts = {"hs": ("m", np.hypot(ds.u, ds.v)), "thq": ("degree", ds.u)}
+    return xr.Dataset({name: part.assign_attrs(units=u) for name, (u, part) in parts.items()})
+
+
 @variants(["A/m", "V/m", "N m-2", "kg m-1 s-1"], options={"vectors": "mx,my"})
 def vectors_of_another_kind(unit: str) -> Any:
     ds = lab(X, Y, units=unit).rename(u="mx", v="my")
