@@ -291,6 +291,8 @@ def _misfit(
     )
     if len(grid) == 2 and nodes[-2:] == grid[::-1]:
         return f"{text}, with rows along y: swap its axes, as in np.swapaxes({name}, -1, -2)"
+    if name != "velocity" and len(shape) == len(grid) + 1 and shape[:-1] == grid:
+        return f"{text}, with the times first: move its last axis, as in np.moveaxis({name}, -1, 0)"
     if name == "velocity" and shape in (grid, grid[1:]):
         return f"{text}, and both components: u, v or u + 1j * v; colours are the argument scalars"
     return text

@@ -308,8 +308,10 @@ def _read_named(data: Any, options: FieldOptions, scalars: Mapping[str, Any]) ->
         own_shape = np.shape(data[key])
         if key in (*places, *velocity):
             continue
-        if name in TIMES and steps and own_shape == steps and times is None:
-            times = host_array(name, data[key])
+        # Files of MATLAB have lines as (1, N) or (N, 1).
+        is_line = (np.size(data[key]),) == steps == (max(own_shape, default=0),)
+        if name in TIMES and is_line and times is None:
+            times = host_array(name, data[key]).ravel()
         elif own_shape in (shape, shape[-2:]):
             nodal[key] = data[key]
     options = replace(options, vectors=None, times=times)

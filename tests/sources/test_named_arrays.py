@@ -82,6 +82,22 @@ def test_structured_arrays_and_archives_are_named(tmp_path: Path) -> None:
     assert field.times.tolist() == [3, 5]
 
 
+def test_files_of_matlab_have_columns_of_times(tmp_path: Path) -> None:
+    """As of coastal radar, with the times last: the error tells how to move them."""
+    io = pytest.importorskip("scipy.io")
+    series = {"U": np.stack([U] * 3, axis=-1), "V": np.stack([V] * 3, axis=-1)}
+    io.savemat(tmp_path / "radar.mat", {"X": X, "Y": Y, "T": [[3.0], [4.0], [6.0]], **series})
+    with pytest.raises(FieldError, match=r'use flowtex.show\(scipy.io.loadmat\("radar.mat"\)\)'):
+        FlowField.from_file(tmp_path / "radar.mat")
+    arrays = io.loadmat(tmp_path / "radar.mat")
+    with pytest.raises(FieldError, match=r"times first: .* np.moveaxis\(u, -1, 0\)"):
+        read(arrays)
+    moved = {name: np.moveaxis(arrays[name], -1, 0) for name in series}
+    field = read({**arrays, **moved})
+    check(field)
+    assert field.times.tolist() == [3, 4, 6]
+
+
 @quiet
 def test_rows_of_a_lattice_are_a_grid_and_other_points_are_joined() -> None:
     pytest.importorskip("xarray")

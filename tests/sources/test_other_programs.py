@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from flowtex import FieldError, FlowField
@@ -31,6 +32,17 @@ def test_file_of_another_program_names_the_way(name: str, expected: str, tmp_pat
     (tmp_path / name).write_bytes(b"\x01\x02\x03")
     with pytest.raises(FieldError, match=expected):
         FlowField.from_file(tmp_path / name)
+
+
+def test_arrays_of_hdf5_are_named_with_their_positions(tmp_path: Path) -> None:
+    """As of cutouts of the Johns Hopkins turbulence database."""
+    h5py = pytest.importorskip("h5py")
+    with h5py.File(tmp_path / "cutout.h5", "w") as file:
+        file["Velocity_0001"] = np.zeros((2, 3, 4, 3))
+        file["xcoor"] = np.zeros(4)
+    expected = r'Velocity_0001 \(2 x 3 x 4 x 3\), xcoor \(4\)\..*such as file\["Velocity_0001"\]'
+    with pytest.raises(FieldError, match=expected):
+        FlowField.from_file(tmp_path / "cutout.h5")
 
 
 @pytest.mark.parametrize(

@@ -16,8 +16,8 @@ LINES = {
     ),
     ".mat": (
         "a MATLAB file",
-        'data = scipy.io.loadmat("{name}"), and flowtex.show(flowtex.FlowField.from_arrays('
-        '(data["x"], data["y"]), numpy.stack([data["u"], data["v"]], axis=-1)))',
+        'flowtex.show(scipy.io.loadmat("{name}")), whose arrays have names such as x, y, u and v; '
+        'vectors="a,b" names other components',
     ),
     ".npy": (
         "an array of NumPy without positions",
@@ -26,8 +26,8 @@ LINES = {
     ),
     ".npz": (
         "an archive of NumPy arrays",
-        'data = numpy.load("{name}"), and flowtex.show(flowtex.FlowField.from_arrays('
-        '(data["x"], data["y"]), numpy.stack([data["u"], data["v"]], axis=-1)))',
+        'flowtex.show(numpy.load("{name}")), whose arrays have names such as x, y, u and v; '
+        'vectors="a,b" names other components',
     ),
     ".parquet": ("a table of Parquet", 'flowtex.show(pandas.read_parquet("{name}"))'),
     ".feather": ("a table of Arrow", 'flowtex.show(pandas.read_feather("{name}"))'),
@@ -166,19 +166,26 @@ def _of_openpmd(path: Path, file: h5py.File) -> str:
 
 def _of_arrays(path: Path, file: h5py.File) -> str:
     arrays: list[str] = []
+    places: list[str] = []
 
     def add(name: str, item: Any) -> None:
-        if len(getattr(item, "shape", ())) >= 2:
-            shape = " x ".join(map(str, item.shape))
-            arrays.append(f"{name} ({shape})")
+        shape = getattr(item, "shape", ())
+        if len(shape) >= 2:
+            arrays.append(f"{name} ({' x '.join(map(str, shape))})")
+        elif shape:
+            places.append(f"{name} ({shape[0]})")
 
     file.visititems(add)
-    listed = ", ".join(arrays[:MOST_LISTED])
-    more = len(arrays) - MOST_LISTED
+    found = [*arrays, *places]
+    listed = ", ".join(found[:MOST_LISTED])
+    more = len(found) - MOST_LISTED
     if more > 0:
         listed += f" and {more} more"
+    if not arrays:
+        return f"this HDF5 file has no array of two axes; its arrays are {listed or 'none'}"
+    name = found[0].rpartition(" (")[0]
     return (
-        f"this HDF5 file follows no convention that is known; its arrays are {listed or 'none'}. "
-        f'Draw them with file = h5py.File("{path.name}"), and flowtex.show(flowtex.FlowField.'
-        "from_arrays((x, y), numpy.stack([u, v], axis=-1)))"
+        f"this HDF5 file follows no convention that is known; its arrays are {listed}. Draw them "
+        f'with file = h5py.File("{path.name}"), and flowtex.show(x, y, u, v) with arrays of this '
+        f'file, such as file["{name}"][:]'
     )
