@@ -27,6 +27,8 @@ if TYPE_CHECKING:
 TIMES = re.compile(r"^(t|n?times?|time_?\w*|\w+_time|dates?|frames?)$", re.IGNORECASE)
 ROWS = re.compile(r"^(y\w*|j\w*|lat\w*|nlat|eta\w*|south_north\w*|rlat)$", re.IGNORECASE)
 COLUMNS = re.compile(r"^(x\w*|i\w*|lon\w*|nlon|xi\w*|west_east\w*|rlon)$", re.IGNORECASE)
+#: Units of longitude and latitude.
+ON_EARTH = re.compile(r"^deg(ree)?s?_?(north|east|N|E)$")
 #: Name of the dimension of nodes, where there is a mesh.
 NODES = "mesh_nodes"
 #: Name of the dimension of faces, where there is a mesh.
@@ -205,10 +207,25 @@ def horizontal_dims(array: xr.DataArray) -> tuple[str, ...]:
         if all(line_of(array, d) is not None for d in free):  # such as x1 and x2
             return max(free), min(free)
         return free[0], free[1]
+    placed = _placed_dims(array)
+    if placed and (not rows or not columns):
+        return placed
     pair = (rows or [dims[-2]])[-1], (columns or [dims[-1]])[-1]
     if pair[0] != pair[1]:
         return pair
     return (dims[-2], dims[-1])
+
+
+def _placed_dims(array: xr.DataArray) -> tuple[str, str] | None:
+    """Return the two dimensions of longitude and latitude; ``None`` without such coordinates."""
+    found = set()
+    for c in array.coords.values():
+        if c.ndim == 2 and ON_EARTH.match(str(c.attrs.get("units", ""))):
+            found.add(tuple(map(str, c.dims)))
+    if len(found) != 1:
+        return None
+    rows, columns = found.pop()
+    return rows, columns
 
 
 def marked_axes(array: xr.DataArray) -> dict[str, list[str]]:

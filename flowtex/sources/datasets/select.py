@@ -17,7 +17,7 @@ from flowtex.errors import FieldError
 from flowtex.field import units
 from flowtex.field.vector_names import is_velocity
 from flowtex.remedies import Remedy
-from flowtex.sources.datasets.axes import FACES, NODES, horizontal_dims
+from flowtex.sources.datasets.axes import FACES, NODES, ON_EARTH, horizontal_dims
 from flowtex.sources.datasets.curved import is_around, on_sphere
 from flowtex.sources.datasets.directions import (
     ANGLE,
@@ -66,8 +66,6 @@ MODIFIERS = re.compile(
 )
 #: A name that ends with the number of a component.
 NUMBERED = re.compile(r"^(.*[^0-9])[123]$")
-#: Ends of units of longitude and latitude.
-ON_EARTH = re.compile(r"_?(north|east|N|E)$")
 #: Names of components along polar coordinates, without the letters of the vector.
 RADIAL = re.compile(r"^[uvw]?_?(r|rad|radial)$|^radial_\w+$", re.I)
 AROUND = re.compile(
@@ -592,7 +590,7 @@ def _with_angle(arrays: Sequence[xr.DataArray]) -> str:
     for array in arrays:
         if not _is_angle(array):
             lengths.append(array.name)
-        elif not ON_EARTH.search(str(array.attrs.get("units", ""))):
+        elif not ON_EARTH.match(str(array.attrs.get("units", ""))):
             turns.append(array.name)
     if not lengths or not turns:
         return ""

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from flowtex.errors import import_extra
 from flowtex.field import units
-from flowtex.sources.datasets.axes import TIMES, is_dates
+from flowtex.sources.datasets.axes import ON_EARTH, TIMES, is_dates
 from flowtex.sources.datasets.levels import with_levels
 
 if TYPE_CHECKING:
@@ -29,7 +29,7 @@ ATTRIBUTES = {
 def with_axes(ds: xr.Dataset) -> xr.Dataset:
     """Return a dataset whose coordinates are marked with their axes."""
     import_extra("cf_xarray", "xarray")
-    ds = with_levels(ds)
+    ds = with_levels(_with_places(ds))
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         guessed = guess_axes(ds)
@@ -48,6 +48,24 @@ def with_axes(ds: xr.Dataset) -> xr.Dataset:
         if is_number and "axis" in c.attrs:  # which of them is across is a choice
             del c.attrs["axis"]
     return guessed
+
+
+def _with_places(ds: xr.Dataset) -> xr.Dataset:
+    """Return a dataset whose longitude and latitude over two axes are coordinates."""
+    units_of = {}
+    for name, array in ds.data_vars.items():
+        if array.ndim != 2:
+            continue
+        unit = str(array.attrs.get("units", ""))
+        word = str(array.attrs.get("long_name", "")).lower()
+        if ON_EARTH.match(unit):
+            units_of[name] = unit
+        elif word in ("longitude", "latitude"):
+            units_of[name] = str(ATTRIBUTES[word]["units"])
+    places = ds.set_coords(list(units_of))
+    for name, unit in units_of.items():
+        places = places.assign_coords({name: places[name].assign_attrs(units=unit)})
+    return places
 
 
 def time_axis(datasets: Sequence[xr.Dataset]) -> str:

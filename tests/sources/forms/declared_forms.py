@@ -191,6 +191,22 @@ def speed_of_one_of_two_winds() -> Any:
     return speeds_of_radar(), on_earth(LON, LAT)
 
 
+@form(says="position is number 0")
+def solutions_of_a_scatterometer() -> Any:
+    """As of NSCAT: the last axis has four solutions, and places are declared by long names."""
+    lon, lat = np.meshgrid(LON, LAT)
+    u, v = wind(lon, lat)
+    parts = {"Wind_Speed": np.hypot(u, v), "Wind_Dir": np.degrees(np.arctan2(u, v))}
+    shares = np.array([1.0, 0.8, 0.6, 0.4])
+    dims = ("row", "WVC", "position")
+    ds = xr.Dataset({name: (dims, part[..., None] * shares) for name, part in parts.items()})
+    ds.Wind_Speed.attrs["units"] = "m/s"
+    ds.Wind_Dir.attrs = {"units": "deg", "long_name": "wind direction, toward"}
+    for name, values, word in (("WVC_Lat", lat, "latitude"), ("WVC_Lon", lon, "longitude")):
+        ds[name] = (dims[:2], values, {"units": "deg", "long_name": word})
+    return ds, on_earth(lon, lat)
+
+
 @form(error='components V1, V2, V3 have numbers.*vectors="V1,V2"', never="u1")
 def numbered_components() -> Any:
     """As of ENLIL, whose axes are radius, colatitude and longitude."""
