@@ -15,6 +15,7 @@ import numpy as np
 
 from flowtex._util.arguments import brief, checked_source
 from flowtex._util.array_types import AnyArray
+from flowtex._util.host_arrays import unit_text
 from flowtex._util.memory import check_memory
 from flowtex.errors import FieldError, import_extra, import_package
 from flowtex.field import units
@@ -203,18 +204,20 @@ def of_tree(tree: xr.DataTree, file: Path | None = None) -> list[xr.Dataset]:
 
 
 def _plain(ds: xr.Dataset) -> xr.Dataset:
-    """Return a dataset of NumPy's types; dates with a zone are in UTC."""
-    own = []
-    for n, a in ds.variables.items():
-        if not isinstance(a.dtype, np.dtype):
-            own.append(str(n))
+    """Return a dataset of NumPy's types; units of pint are attributes, dates with a zone UTC."""
+    plain: dict[str, Any] = {}
+    for key, variable in ds.variables.items():
+        name = str(key)
+        held: Any = getattr(variable, "_data", None)  # ``data`` would read a file
+        if hasattr(held, "magnitude"):
+            attrs = {**variable.attrs, "units": unit_text(held)}
+            plain[name] = (variable.dims, held.magnitude, attrs)
+        elif not isinstance(variable.dtype, np.dtype):
+            values = plain_values(variable.to_index() if variable.ndim == 1 else variable.data)
+            plain[name] = (variable.dims, np.reshape(values, variable.shape), variable.attrs)
+    own = list(plain)
     if not own:
         return ds
-    plain = {}
-    for name in own:
-        variable = ds.variables[name]
-        values = plain_values(variable.to_index() if variable.ndim == 1 else variable.data)
-        plain[name] = (variable.dims, np.reshape(values, variable.shape), variable.attrs)
     coordinates = {name: plain.pop(name) for name in own if name in ds.coords}
     return ds.drop_vars(own).assign_coords(coordinates).assign(plain)
 

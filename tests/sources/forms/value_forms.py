@@ -517,3 +517,17 @@ def rows_of_points() -> Any:
     x, y = p[~((p[:, 0] > 0) & (p[:, 1] > 0))].T
     u, v = plane(x, y)
     return pd.DataFrame({"x": x, "y": y, "u": u, "v": v}), at_points(np.stack([x, y], axis=-1))
+
+
+@variants(["knot", "cm/s"])
+def quantities_of_pint(unit: str) -> Any:
+    """As MetPy's ``quantify`` makes them: the unit belongs to the values, not to attributes."""
+    import pint
+
+    registry = pint.UnitRegistry()
+    ds = earth(LON, LAT)
+    factor = float(registry.Quantity(1.0, "m/s").to(unit).magnitude)
+    for name in "uv":
+        values = registry.Quantity(ds[name].values * factor, unit)
+        ds[name] = (ds[name].dims, values, {"standard_name": ds[name].attrs["standard_name"]})
+    return ds, STEADY
