@@ -23,6 +23,7 @@ SPELLINGS = (
     (re.compile(r"[\u2010-\u2015\u2212]"), "-"),
     (re.compile(r"[{}\[\]]"), ""),
     (re.compile(r"(?<=[A-Za-z])\s+(?=-\d)"), ""),
+    (re.compile(r"(?<=[A-Za-z])\.(?=[A-Za-z])"), " "),
     (re.compile(r"\b(px|pix)\b"), "pixel"),
     (re.compile(r"(?<=/)\s*dt\b"), "frame"),
     (re.compile(r"\bmb\b", re.IGNORECASE), "millibar"),

@@ -98,6 +98,7 @@ def test_lazy_steps_stay_lazy() -> None:
         ("Meters", "m"),
         ("Days", "day"),
         ("ms-1", "m/s"),
+        ("m.s^-1", "m/s"),
         ("cm s\u22121", "cm/s"),
         ("m s -1", "m/s"),
         ("[m/s]", "m/s"),

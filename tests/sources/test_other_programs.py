@@ -7,7 +7,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+import flowtex
 from flowtex import FieldError, FlowField
+from flowtex.sources.datasets import is_dataset
 from flowtex.sources.reader_errors import errors_of_file
 
 
@@ -67,3 +69,26 @@ OwnError.__module__ = "flowtex.sources.example"
 def test_error_of_the_code_stays() -> None:
     with pytest.raises(OwnError), errors_of_file("flow.abc"):
         raise OwnError
+
+
+def test_objects_of_other_libraries_name_what_to_pass(tmp_path: Path) -> None:
+    netcdf = pytest.importorskip("netCDF4")
+    polars = pytest.importorskip("polars")
+    with netcdf.Dataset(tmp_path / "flow.nc", "w") as data:
+        expected = r"Dataset of netCDF4; pass xarray.open_dataset\(data.filepath\(\)\)"
+        with pytest.raises(FieldError, match=expected):
+            flowtex.render(data)
+    with pytest.raises(FieldError, match=r"LazyFrame of polars; pass data.collect\(\)"):
+        flowtex.render(polars.LazyFrame({"x": [0.0]}))
+
+
+def test_subclasses_of_datasets_are_datasets() -> None:
+    """Such as those of uxarray."""
+    xarray = pytest.importorskip("xarray")
+
+    own = type("Own", (xarray.Dataset,), {"__slots__": ()})
+    u, v = np.mgrid[:3.0, :4.0]
+    variables = {"u": (("y", "x"), u), "v": (("y", "x"), v)}
+    data = own(variables, {"x": np.arange(4.0), "y": np.arange(3.0)})
+    assert is_dataset(data)
+    assert np.array_equal(FlowField.from_xarray(data).velocity[0][..., 0], u)

@@ -17,5 +17,12 @@ def is_dataset(data: object) -> bool:
         items = data
     else:
         items = [data]
-    kinds = ((kind.__module__.partition(".")[0], kind.__name__) for kind in map(type, items))
-    return bool(items) and all(kind in KINDS for kind in kinds)
+    return bool(items) and all(map(_is_kind, items))
+
+
+def _is_kind(item: object) -> bool:
+    """Return whether the class of an item, or one it derives from, is one of the kinds."""
+    for kind in type(item).__mro__:
+        if (kind.__module__.partition(".")[0], kind.__name__) in KINDS:
+            return True
+    return False

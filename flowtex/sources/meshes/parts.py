@@ -46,6 +46,14 @@ COPIED = 1
 MOST_LISTED = 12
 #: Length of a gap in usual steps from which on a notice is issued.
 GAP_STEPS = 8
+#: Libraries, their classes, and how their objects become data that are read.
+OTHERS = (
+    ("netCDF4", "Dataset", "xarray.open_dataset(data.filepath())"),
+    ("iris", "Cube", "[xarray.DataArray.from_iris(cube) for cube in (u, v)]"),
+    ("polars", "LazyFrame", "data.collect()"),
+    ("dask", "DataFrame", "data.compute()"),
+    ("pyarrow", "Table", "data.to_pandas()"),
+)
 PARTS = "If these are parts of one mesh and not time steps, give one of them, as in block=0"
 
 
@@ -364,8 +372,12 @@ def _wrapped(source: Any, label: str) -> pv.DataObject:
             mesh = pv.wrap(source)
         check_mesh(mesh)
         return joined(mesh)
+    kind = type(source)
+    for library, name, remedy in OTHERS:
+        if kind.__module__.startswith(library) and kind.__name__ == name:
+            raise FieldError(f"{label} is a {name} of {library}; pass {remedy}")
     raise FieldError(
-        f"{label} has type {type(source).__name__}; expected a PyVista mesh or MultiBlock, a list "
+        f"{label} has type {kind.__name__}; expected a PyVista mesh or MultiBlock, a list "
         "of them, or a reader; for others use FlowField.from_arrays, from_triangles or from_xarray"
     )
 
