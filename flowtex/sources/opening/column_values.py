@@ -8,9 +8,15 @@ import numpy as np
 
 from flowtex._util.array_types import AnyArray, Floats
 from flowtex.errors import FieldError, import_extra
+from flowtex.sources.datasets.directions import TURNS
 
 #: A number with a decimal comma.
 DECIMAL_COMMA = r"[-+]?\d*,\d+(?:[eE][-+]?\d+)?"
+#: Points of the compass, clockwise from north.
+COMPASS = (
+    *("N", "NNE", "NE", "ENE", "E", "ESE", "SE", "SSE"),
+    *("S", "SSW", "SW", "WSW", "W", "WNW", "NW", "NNW"),
+)
 #: Fewest columns with a unit in a first row of units.
 FEWEST_UNITS = 2
 
@@ -57,8 +63,14 @@ def _is_text(column: Any) -> bool:
 
 
 def _parsed(column: Any) -> Floats:
-    """Return the numbers in a column of texts, (N,), also with decimal commas; NaN for others."""
+    """Return the numbers in a column of texts, (N,), also with decimal commas; NaN for others.
+
+    Points of the compass are degrees in a column of directions.
+    """
     texts = column.astype("object").where(column.notna(), "").astype(str).str.strip()
+    if TURNS.search(str(column.name)):
+        degrees = {point: str(22.5 * number) for number, point in enumerate(COMPASS)}
+        texts = texts.str.upper().replace(degrees)
     commas = texts.str.fullmatch(DECIMAL_COMMA)
     texts = texts.where(~commas, texts.str.replace(",", ".", regex=False))
     return np.asarray(import_extra("pandas", "xarray").to_numeric(texts, errors="coerce"), float)

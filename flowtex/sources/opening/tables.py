@@ -327,7 +327,10 @@ def read_csv(path: Path) -> xr.Dataset:
     _check_rows(path, separator if separator in header else None)
     frame = pandas.read_csv(path, skipinitialspace=True, encoding="utf-8-sig", **options)
     if any(re.fullmatch(r"[-+.\deE]+", str(name).strip()) for name in frame.columns):
-        raise FieldError(f"its first line is {header.strip()[:60]!r}; expected names of columns")
+        raise FieldError(
+            f"its first line is {header.strip()[:60]!r}; expected names of columns above the "
+            "numbers, such as lon,lat,u,v"
+        )
     _check_end(frame)
     return of_table(frame)
 

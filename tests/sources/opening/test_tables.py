@@ -165,10 +165,11 @@ def test_csv_with_missing_values_and_texts_is_read(tmp_path: Path) -> None:
     assert (~field.valid).sum() == 2
 
 
-def test_csv_without_header_raises(tmp_path: Path) -> None:
+def test_few_columns_without_header_raise(tmp_path: Path) -> None:
     path = tmp_path / "flow.csv"
-    path.write_text("0,1,2,3\n4,5,6,7\n", encoding="utf-8")
-    with pytest.raises(FieldError, match=r"flow.csv: its first line is '0,1,2,3'; expected"):
+    path.write_text("0,1,2\n4,5,6\n", encoding="utf-8")
+    expected = r"flow.csv: its first line is '0,1,2'; expected names .* such as lon,lat,u,v"
+    with pytest.raises(FieldError, match=expected):
         FlowField.from_file(path)
 
 
@@ -241,3 +242,19 @@ def test_a_table_of_one_component_names_the_remedy() -> None:
     component = pd.DataFrame(np.ones((3, 4)), columns=pd.Index([0.0, 0.1, 0.2, 0.3], name="x"))
     with pytest.raises(FieldError, match=r"positions, 0.0 to 0.3.*flowtex.show\(u, v\)"):
         of_table(component)
+
+
+def test_points_of_the_compass_are_directions_in_degrees() -> None:
+    x, y = map(np.ravel, np.meshgrid(np.arange(8.0), np.arange(4.0)))
+    points = np.tile(["N", "ne", "E", "SSE", "S", "WSW", "W", "NNW"], 4).astype(object)
+    table = pd.DataFrame({"lon": x, "lat": y, "wind_speed": 2.0, "wind_dir": points})
+    field = FlowField.from_xarray(table)
+    angles = np.radians([0, 45, 90, 157.5, 180, 247.5, 270, 337.5])
+    assert field.projection is not None
+    lon, lat = field.projection.lonlat(field.points[0])
+    east, north = field.projection.components(lon, lat, field.velocity[0][0])
+    assert np.allclose(east, -2 * np.sin(angles))
+    assert np.allclose(north, -2 * np.cos(angles))
+    table.loc[5, "wind_dir"] = "VRB"
+    with pytest.raises(FieldError, match=r"column 'wind_dir' .* has the text 'VRB' in row 6"):
+        of_table(table)
