@@ -109,6 +109,8 @@ def axes(ax: Any = None, **given: Any) -> object:
     return flowtex.axes(ax, **{"mesh": plane(), **given})
 
 
+ANGLES = np.arange(4.0)
+ARC_TWICE = np.stack([np.stack([np.cos(ANGLES), np.sin(ANGLES)], axis=-1)] * 3)
 LINE = np.arange(12.0).reshape(3, 4, 1) * [1, 2, -0.5]
 FINITE = "expected three finite numbers"
 
@@ -122,6 +124,7 @@ TABLE_OF_CALLS: dict[Callable[..., object], list[tuple[Any, str]]] = {
         ({"points": 0 * POINTS - [9.99999e-07, 1e-6]}, "all usable nodes lie"),
         ({"points": LINE}, "all usable nodes lie on one line; expected a surface"),
         ({"points": LINE + 1e6}, "all usable nodes lie on one line"),
+        ({"points": ARC_TWICE}, "no cell has an area, because the nodes of each lie on one line"),
         ({"points": 1e40 * POINTS}, "points has values up to 2e+40; expected 1e-30 to 1e+30"),
         ({"points": [[1, 2], [3], [4]]}, "points is not an array ... expected real numbers"),
         ({"velocity": np.ones((4, 3, 3))}, "velocity has shape (4, 3, 3); ... axes seem to be swa"),

@@ -23,6 +23,7 @@ from flowtex.field.field_arrays import GridArrays
 from flowtex.field.grids.grid_surface import GridSurface, known_positions
 from flowtex.field.grids.poles import Poles
 from flowtex.field.steps import LazySteps, first_step
+from flowtex.field.triangles.triangle_nodes import solid_triangles
 from flowtex.field.validation import (
     LENGTHS,
     Checked,
@@ -47,6 +48,7 @@ MIN_RING_LINES = 8  #: Least number of lines of a ring with a gap.
 #: Additional cost of a step to a node at right angles, relative to a step to a parallel one.
 TURN_COST = 10.0
 REST_SHARE = 1e-7  #: A vector shorter than this share of the longest has no direction.
+AREA_BLOCK = 10_000  #: Cells in which one with an area is looked for at a time.
 
 
 def close_axes(
@@ -237,6 +239,7 @@ def grid_nodes(arrays: GridArrays, own: Checked, *, on_globe: bool) -> CheckedNo
         v = with_equal_ends(v)
     p, v, ok, data, closed = close_axes(p, v, ok, data, arrays.periodic)
     surface = GridSurface(p, ok, closed, on_globe=on_globe)
+    raise_faults(_area_faults(surface))
     if arrays.sign_free:
         v = _oriented_on(surface, v)
     v[:, ~ok] = 0.0
@@ -248,6 +251,21 @@ def grid_nodes(arrays: GridArrays, own: Checked, *, on_globe: bool) -> CheckedNo
     ordered = {name: all_scalars[name] for name in (*own.scalars, *on_cells)}
     position = surface.has_position
     return CheckedNodes(surface, steps, ordered, position, arrays.sign_free, arrays.section)
+
+
+def _area_faults(surface: GridSurface) -> list[str]:
+    """Return the fault of a surface of which no cell has an area, as with one row given twice."""
+    points = surface.points.reshape(-1, 3)
+    cells = np.flatnonzero(surface.cells)
+    for start in range(0, len(cells), AREA_BLOCK):
+        first = 2 * cells[start : start + AREA_BLOCK]
+        corners = surface.corners_of(np.append(first, first + 1))
+        if solid_triangles(points, corners).any():
+            return []
+    return [
+        "no cell has an area, because the nodes of each lie on one line; expected a surface: check "
+        "the coordinates, and whether a row or column is there twice"
+    ]
 
 
 def _oriented_on(surface: GridSurface, v: Floats) -> Floats:
