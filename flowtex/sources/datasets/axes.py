@@ -13,7 +13,7 @@ from flowtex._util.arguments import near_names
 from flowtex._util.array_types import AnyArray, Floats, Indices
 from flowtex.errors import FieldError
 from flowtex.field import units
-from flowtex.field.dates import as_seconds, span_since
+from flowtex.field.dates import ENDS, as_seconds, span_since
 from flowtex.field.options import FieldOptions
 from flowtex.remedies import Remedy
 from flowtex.sources.datasets import labels
@@ -446,15 +446,16 @@ def _drawn(
             return int(number) % count
         if name in choice.sel:
             choice.used.add(name)
-            target = choice.sel[name]
             if line is None:
                 raise FieldError(
                     f"{name} has no coordinate values; select by index: isel={{{name!r}: 0}}"
                 )
-            if kind == TIME and isinstance(target, slice):
-                return _within(target, line, name)
+            if kind == TIME:
+                found = _of_times(choice.sel[name], line, name)
+                if found is not None:
+                    return found
             unit = value_unit(array, dim)
-            target = _in_unit(target, line, unit)
+            target = _in_unit(choice.sel[name], line, unit)
             is_longitude = dim.lower().startswith("lon") or unit.endswith("_east")
             return _nearest(target, line, name, unit, is_longitude=is_longitude)
     if kind == TIME and line is not None and line.dtype.kind in "mMOfiu":
@@ -549,6 +550,17 @@ def _nearest(target: Any, line: AnyArray, name: str, unit: str, *, is_longitude:
     if not off.min() <= max(widest / 2, 1e-6 * off.max(where=np.isfinite(off), initial=0.0)):
         raise FieldError(msg)
     return int(np.argmin(off))
+
+
+def _of_times(target: Any, line: AnyArray, name: str) -> int | list[int] | None:
+    """Return the times of a range, or the first or last one; ``None`` for other targets."""
+    if isinstance(target, slice):
+        return _within(target, line, name)
+    known = np.flatnonzero(line == line)
+    if not isinstance(target, str) or target not in ENDS or not len(known):
+        return None
+    order = np.argsort(line[known], kind="stable")
+    return int(known[order[ENDS[target]]])
 
 
 def _within(target: slice, line: AnyArray, name: str) -> list[int]:

@@ -194,6 +194,14 @@ def a_chosen_time_of_v_in_another_order() -> Any:
     return [u, v.isel(time=BACK)], on_earth(LON, LAT, HOURS[1:2])
 
 
+@form(options={"sel": {"time": "last"}})
+def last_of_times_out_of_order() -> Any:
+    """As ``--time last`` of the shell selects it in a file."""
+    times = dates([12.0, 0.0, 6.0])
+    times[1] = np.datetime64("NaT", "ns")
+    return retimed(series().isel(time=[2, 0, 1]), times), on_earth(LON, LAT, HOURS[2:])
+
+
 @form(options={"sel": {"time": slice("2024-01-01T05:00", "2024-01-01T13:00")}})
 def a_range_of_times() -> Any:
     return series(), on_earth(LON, LAT, HOURS[1:])
