@@ -760,7 +760,9 @@ class FlowField(FieldData):
         Returns
         -------
         PointValues or None
-            Speed and components in the units of the data, scalars, and the position.
+            Speed and components in the units of the data, scalars, and the position. Where a node
+            around the point has no data at one of the two steps around the time, they are the
+            values of the nearer step, and the velocity is NaN if that has none.
 
         Raises
         ------
