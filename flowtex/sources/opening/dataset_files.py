@@ -17,6 +17,7 @@ from flowtex._util.arguments import brief, checked_source
 from flowtex._util.array_types import AnyArray
 from flowtex._util.host_arrays import unit_text
 from flowtex._util.memory import check_memory
+from flowtex._util.xarray_internals import held_array
 from flowtex.errors import FieldError, import_extra, import_package
 from flowtex.field import units
 from flowtex.sources.datasets import labels
@@ -208,7 +209,7 @@ def _plain(ds: xr.Dataset) -> xr.Dataset:
     plain: dict[str, Any] = {}
     for key, variable in ds.variables.items():
         name = str(key)
-        held: Any = getattr(variable, "_data", None)  # ``data`` would read a file
+        held = held_array(variable)
         if hasattr(held, "magnitude"):
             attrs = {**variable.attrs, "units": unit_text(held)}
             plain[name] = (variable.dims, held.magnitude, attrs)
