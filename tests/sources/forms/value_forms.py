@@ -524,7 +524,7 @@ def quantities_of_pint(unit: str) -> Any:
     """As MetPy's ``quantify`` makes them: the unit belongs to the values, not to attributes."""
     import pint
 
-    registry = pint.UnitRegistry()
+    registry: Any = pint.UnitRegistry()
     ds = earth(LON, LAT)
     factor = float(registry.Quantity(1.0, "m/s").to(unit).magnitude)
     for name in "uv":
