@@ -238,16 +238,16 @@ class FlowField(FieldData):
             times=times,
             valid=valid,
             periodic=periodic,
-            scalars=_or_none_at_all(scalars),
-            cell_scalars=_or_none_at_all(cell_scalars),
+            scalars=_mapping(scalars),
+            cell_scalars=_mapping(cell_scalars),
             name=name,
             length_unit=length_unit or plain.length_unit,
             time_unit=time_unit,
             velocity_unit=velocity_unit or plain.velocity_unit,
             vectors=vectors,
             sign_free=sign_free,
-            units=_or_none_at_all(units),
-            long_names=_or_none_at_all(long_names),
+            units=_mapping(units),
+            long_names=_mapping(long_names),
             projection=projection,
         )
         return cls._checked(arrays)
@@ -327,15 +327,15 @@ class FlowField(FieldData):
             velocity=velocity,
             times=times,
             valid=valid,
-            scalars=_or_none_at_all(scalars),
-            cell_scalars=_or_none_at_all(cell_scalars),
+            scalars=_mapping(scalars),
+            cell_scalars=_mapping(cell_scalars),
             name=name,
             length_unit=length_unit,
             time_unit=time_unit,
             velocity_unit=velocity_unit,
             vectors=vectors,
-            units=_or_none_at_all(units),
-            long_names=_or_none_at_all(long_names),
+            units=_mapping(units),
+            long_names=_mapping(long_names),
             projection=projection,
         )
         return cls._checked(arrays)
@@ -778,7 +778,7 @@ class FlowField(FieldData):
         return values_near(self, x, y, z, time)
 
 
-def _or_none_at_all(values: Mapping[str, Any] | None) -> Mapping[str, Any]:
+def _mapping(values: Mapping[str, Any] | None) -> Mapping[str, Any]:
     """Return named values; none are an empty mapping."""
     if values is None:
         return {}

@@ -198,7 +198,7 @@ class FieldData:
         return flow
 
     def with_surface(self, surface: Surface) -> Self:
-        """Return the field with its geometry, which equals what the property would compute."""
+        """Keep the geometry, which equals what the property would compute; return this field."""
         self.__dict__["surface"] = surface
         return self
 

@@ -18,13 +18,11 @@ _modules: list[str] = []
 
 
 def register_readers(module: str) -> None:
-    """Let a module read meshes, files and datasets, by functions such as ``field_of_mesh``."""
+    """Let a module read meshes, files and datasets by the functions in its ``READERS``."""
     _modules.append(module)
 
 
 def reader(kind: Kind) -> Callable[..., Any]:
     """Return the function that makes a field of what it reads and its options."""
-    function: Callable[..., Any] = getattr(
-        importlib.import_module(_modules[-1]), f"field_of_{kind}"
-    )
-    return function
+    readers: dict[Kind, Callable[..., Any]] = importlib.import_module(_modules[-1]).READERS
+    return readers[kind]

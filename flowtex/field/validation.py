@@ -302,28 +302,28 @@ def filled_gaps(
     """
     if scalars is None:
         scalars = {}
-    unchanged = velocity, scalars, units or {}, ""
+    without_gaps = velocity, scalars, units or {}, ""
     if isinstance(velocity, LazySteps):
         numbers = _steps_to_compare(velocity)
         masks: list[Bools] | Bools = [_known(velocity[number]) for number in numbers]
         if len(numbers) < len(velocity) > 1 and isinstance(scalars, Mapping):
             # A step that is read later may lack data: there the speed is missing, and not 0.
             speeds = {"speed": map_steps(velocity, _speed), **scalars}
-            unchanged = velocity, speeds, {"speed": unit, **(units or {})}, ""
+            without_gaps = velocity, speeds, {"speed": unit, **(units or {})}, ""
     else:
         try:
             velocity = with_gaps("velocity", velocity)
         except FieldError:  # the field lists all faults later
-            return unchanged
+            return without_gaps
         if velocity.ndim == axes + 2:
             masks = _known(velocity)
         else:
             masks = []
     if len(masks) < 2 or not isinstance(scalars, Mapping):
-        return unchanged
+        return without_gaps
     sometimes: Bools = np.any(masks, axis=0)
     if np.array_equal(sometimes, np.all(masks, axis=0)):
-        return unchanged
+        return without_gaps
     whole = map_steps(velocity, partial(_filled, sometimes))
     data = dict(scalars)
     data.setdefault(NO_DATA, map_steps(velocity, _lacking))

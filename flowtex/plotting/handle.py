@@ -200,8 +200,10 @@ class FlowHandle(AppearanceAttributes):
         """
         reading = FieldOptions.of(**options)
         field = share_field(read_field(mesh, reading))
-        self.show_scene(self.scene.showing(field, keep_range=False))
+        self.show_scene(self.scene.showing(field, keep_range=False), render=False)
+        # Before it is drawn: a frame reads the followed mesh again if it has changed.
         self.follow_mesh(mesh, reading)
+        self._draw()
 
     def follow_mesh(self, mesh: Any, reading: FieldOptions) -> None:
         """Read a PyVista mesh again before a frame if it has been changed in place."""

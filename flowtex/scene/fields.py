@@ -37,7 +37,7 @@ KEPT_BYTES = 500_000_000  #: Memory limit of the cache of drawn fields and trace
 DATA = "Data"  #: Name of a scalar array without a name, as in PyVista.
 
 _fields: WeakCache[FlowField] = WeakCache()
-#: Values of an array by which fields are told apart before all values are compared.
+#: Number of values of an array that are compared first, to tell fields apart.
 MOST_SAMPLED = 2000
 #: Attributes that are compared as texts, or not at all.
 APART = {"formula", "start", "section", "reading"}

@@ -330,6 +330,17 @@ def test_mesh_that_is_changed_in_place_is_drawn_again(window: Any, what: str) ->
         window.render()
 
 
+def test_another_surface_takes_the_place_of_a_mesh_that_was_changed_before(window: Any) -> None:
+    old, new = (cut_at(letter) for letter in "ab")
+    handle = window.flowtex.add(old, scalars="p")
+    shot(window)
+    old["p"][:] = -old["p"]
+    handle.set_surface(new)
+    shot(window)
+    assert handle.actor.mapper.scalar_range == new.get_data_range("p")
+    np.testing.assert_array_equal(handle.field.points.reshape(-1, 3), new.points)
+
+
 def test_colours_follow_the_parameter_of_a_formula(window: Any) -> None:
     """They would all be the highest colour in the range of another parameter."""
     handle = window.flowtex.add(flowtex.formula("pendulum", b=0.2, resolution=65), **PLAIN)
