@@ -1,20 +1,41 @@
-"""Arguments by which users draw something else than was chosen, as text for each front end."""
+"""Arguments by which users draw something else, and corrections, as text for each front end.
+
+Messages are written for Python. :func:`for_shell` writes their arguments as flags, and says where
+the objects of their lines of Python come from.
+"""
 
 from __future__ import annotations
 
+import ast
 import json
 import re
 import shlex
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
 #: Words before an argument, where none are given.
 ANOTHER = "choose another, as in"
+#: Arguments whose value ``False`` is the word ``none`` in a shell; others are switches.
+_NONE = ("mask", "scalars")
 #: Words that need no quotes in a shell.
 _BARE = re.compile(r"[\w.,:/+=-]+")
 #: Characters that have a meaning within double quotes in a shell.
 _SPECIAL = re.compile(r'["$`\\!]')
+#: An argument as it is typed in Python: its name, and a literal or dots.
+_ARGUMENT = re.compile(
+    r"""(?<![\w.'"=-])([a-z_]+)=("(?:[^"\\]|\\.)*"|'[^']*'|\{[^{}]*\}|\.\.\.|-?\d[\d.e+-]*(?<=\d)|"""
+    r"""True\b|False\b)"""
+)
+#: A line of Python that opens a file and draws it, and the modules in it.
+_LINE = re.compile(r'flowtex\.show\([a-z][\w.]*\("[^"]*"\)(?:\.\w+\(\))*\)')
+_MODULE = re.compile(r"(?<![\w.])[a-z]\w*(?:\.[a-z]\w*(?=\.))*(?=\.\w+\()")
+#: Names of objects in lines of Python, and how they are made of a file.
+_OBJECTS = {
+    "ds": "xarray.open_dataset({})",
+    "df": "pandas.read_csv({})",
+    "mesh": "pyvista.read({})",
+}
 
 
 @dataclass(frozen=True)
@@ -36,8 +57,10 @@ class Remedy:
         flag = f"--{self.name.replace('_', '-')}"
         if self.value is True:
             return flag
-        if self.value is False:
+        if self.value is False and self.name in _NONE:
             return f"{flag} none"
+        if self.value is False:
+            return f"--no-{flag.removeprefix('--')}"
         if isinstance(self.value, Mapping):
             words = [_quoted(f"{key}={value}") for key, value in self.value.items()]
             return " ".join(f"{flag} {word}" for word in words)
@@ -63,11 +86,66 @@ def sentence(text: str, remedies: Iterable[Remedy]) -> str:
     return f"{text}; {', '.join(words)}"
 
 
-def for_shell(text: str, remedies: Iterable[Remedy]) -> str:
-    """Return a text with its remedies as they are typed in a shell."""
-    for remedy in remedies:
-        text = text.replace(remedy.in_python, remedy.in_shell)
-    return text
+def for_shell(text: str, names: Collection[str]) -> str:
+    """Return a text whose arguments are typed as in a shell, as ``--u uo`` for ``u="uo"``.
+
+    ``names`` are the arguments that have a flag. Those in calls of Python, and behind a whole line
+    of Python, remain as they are.
+    """
+    parts = []
+    end = 0
+    line = _LINE.search(text)
+    for match in _ARGUMENT.finditer(text):
+        name, value = match.groups()
+        is_of_line = line is not None and match.start() > line.start()
+        if name not in names or is_of_line or _is_in_call(text, match.start()):
+            continue
+        between = text[end : match.start()]
+        if end and between == ", ":
+            between = " "
+        parts += [between, _flag(name, value)]
+        end = match.end()
+    return "".join([*parts, text[end:]])
+
+
+def lines_for_shell(text: str) -> str:
+    """Return how a line of Python in an error is typed; empty without such lines.
+
+    The error may start with the path of the file.
+    """
+    line = _LINE.search(text)
+    if line:
+        modules = ", ".join(dict.fromkeys(_MODULE.findall(line[0])))
+        return f"In a shell: python -c {shlex.quote(f'import {modules}; {line[0]}')}"
+    file = "FILE"
+    named = re.match(r"(.+?\.\w+): ", text)
+    if named:
+        file = named[1]
+    for name, made in _OBJECTS.items():
+        if re.search(rf"(?<![\w.]){name}[.\[]", text):
+            source = made.format(json.dumps(file, ensure_ascii=False))
+            return f"In Python {name} is {source}, and flowtex.show({name}) draws it."
+    return ""
+
+
+def _flag(name: str, value: str) -> str:
+    """Return the flag of an argument whose value is a literal of Python, or dots."""
+    if value == "...":
+        return f"--{name.replace('_', '-')} ..."
+    return Remedy(name, ast.literal_eval(value)).in_shell
+
+
+def _is_in_call(text: str, place: int) -> bool:
+    """Return whether a place in a text is between the parentheses of a call."""
+    depth = 0
+    for number in range(place - 1, 0, -1):
+        if text[number] == ")":
+            depth += 1
+        elif text[number] == "(" and depth:
+            depth -= 1
+        elif text[number] == "(":
+            return text[number - 1].isidentifier()
+    return False
 
 
 def for_page(text: str, remedies: Iterable[Remedy], controls: Mapping[str, str]) -> str:

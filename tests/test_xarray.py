@@ -187,9 +187,9 @@ def test_a_plot_has_levels_norms_and_limits(opengl: Any) -> None:
 @pytest.mark.parametrize(
     ("options", "words"),
     [
-        ({"x": "lat", "y": "lon"}, "exchanged; expected x='lon', y='lat'"),
+        ({"x": "lat", "y": "lon"}, "exchanged; use x='lon', y='lat'"),
         ({"x": "far"}, "x is 'far' and y is None; expected the names of both"),
-        ({"x": "fat", "y": "high"}, "x is 'fat', which the data do not have; did you mean"),
+        ({"x": "fat", "y": "high"}, "the data have no 'fat'; did you mean"),
         ({"x": "far", "y": "py"}, "expected two axes, or two coordinates over both"),
         ({"norm": "symlog", "vmax": 3}, "vmax is 3; expected one of them"),
         ({"x": "far", "y": "high", "levels": [2, 1]}, "expected edges that increase"),

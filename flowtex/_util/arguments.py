@@ -164,4 +164,4 @@ def near_names(name: str, known: Iterable[str], usual: Iterable[str] = ()) -> st
         return f"expected one of {len(names)} names, such as {examples}"
     if names:
         return f"expected one of: {', '.join(names)}"
-    return "expected none: there are no names"
+    return "there are none"

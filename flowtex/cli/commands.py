@@ -27,14 +27,13 @@ from flowtex._util.child.child import FORKS
 from flowtex._util.child.fork_server import fork_server
 from flowtex._util.progress import waiting
 from flowtex._util.terminal import Ended, ended_by_signals
-from flowtex.cli.console import announcer, complain, describe, require_app, say
+from flowtex.cli.console import announcer, complain, describe, require_app, say, typed
 from flowtex.cli.doctor import doctor
 from flowtex.cli.info import info
 from flowtex.cli.options import ServeFlags, UsageError
 from flowtex.cli.serve import pyramid, serve
 from flowtex.cli.write import export, formula, movie, render
 from flowtex.errors import FieldError, Notice
-from flowtex.remedies import for_shell
 from flowtex.rendering import diagnostics
 
 if TYPE_CHECKING:
@@ -140,7 +139,7 @@ def _print_warnings() -> None:
 def _warn(message: Warning | str, category: type[Warning], *_: Any) -> None:
     """Print a warning without the line of code that it came from, or a notice on the data."""
     if issubclass(category, Notice):
-        say((for_shell(str(message), getattr(message, "remedies", ())), "dim"))
+        say((typed(str(message)), "dim"))
     elif not category.__module__.startswith("xarray."):  # how a file was written
         if not isinstance(message, Warning):
             message = UserWarning(message)

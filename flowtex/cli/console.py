@@ -10,12 +10,15 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from cyclopts import MissingArgumentError
+
 from flowtex._util.arguments import checked_target
 from flowtex._util.progress import waiting
 from flowtex._util.terminal import terminal
-from flowtex.cli.options import UsageError, arguments
+from flowtex.cli.options import FLAGS, UsageError, arguments
 from flowtex.errors import install_extra
 from flowtex.field.options import FieldOptions
+from flowtex.remedies import for_shell, lines_for_shell
 from flowtex.scene.fields import read_field
 from flowtex.scene.options import Options
 from flowtex.textures.images import load_image
@@ -34,8 +37,25 @@ LONG_WORD = re.compile(r"(\S{200})\S{200,}(\S{100})")
 
 def complain(error: Exception, colour: str = "red") -> None:
     """Print an error, or a warning, in one paragraph on stderr."""
-    text = LONG_WORD.sub(r"\1…\2", str(error).strip()) or type(error).__name__
+    whole = _words(error)
+    text = LONG_WORD.sub(r"\1…\2", typed(whole)) or type(error).__name__
     say(("flowtex:", f"bold {colour}"), f" {text}", stderr=True)
+    lines = lines_for_shell(whole)
+    if lines:
+        say((lines, "dim"), stderr=True)
+
+
+def _words(error: Exception) -> str:
+    """Return the text of an error; that of a missing option says what it is."""
+    if isinstance(error, MissingArgumentError) and error.argument is not None:
+        what = str(error.argument.parameter.help)
+        return f"missing option {error.argument.name}: {what[0].lower()}{what[1:]}"
+    return str(error).strip()
+
+
+def typed(text: str) -> str:
+    """Return a text whose arguments are flags of the shell."""
+    return for_shell(text, FLAGS)
 
 
 def say(*parts: str | tuple[str, str], stderr: bool = False) -> None:

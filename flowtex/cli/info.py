@@ -7,9 +7,8 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Annotated
 
 from flowtex._util.terminal import terminal
-from flowtex.cli.console import load_field
+from flowtex.cli.console import load_field, typed
 from flowtex.cli.options import FILE, FLAT, FieldFlags, UsageError, arguments
-from flowtex.remedies import for_shell
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -64,7 +63,7 @@ def info(*files: FILE, flow: Annotated[FieldFlags | None, FLAT] = None) -> int:
     for table in tables:
         console.print(table)
     if problem and not options:
-        console.print(Text(f"To draw it: {problem}", "yellow"))
+        console.print(Text(f"To draw it: {typed(problem)}", "yellow"))
     else:
         field = load_field(files, options)
         console.print(_field_table(field, has_reading=bool(paths)))
@@ -246,7 +245,7 @@ def _field_table(field: FlowField, *, has_reading: bool = False) -> Table:
     table = _pairs(rows, title)
     if not has_reading:
         for step in field.reading:
-            table.add_row(step.step, for_shell(step.text, step.remedies))
+            table.add_row(step.step, typed(step.text))
     return table
 
 

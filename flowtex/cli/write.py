@@ -243,8 +243,11 @@ def formula(
     field = line_field("; ".join(words))
     if output is None:
         from flowtex import show
+        from flowtex.rendering import diagnostics
 
-        show(field, size=pixels(frame.size), **options)
+        if diagnostics.has_display():  # a page has no size
+            options["size"] = pixels(frame.size)
+        show(field, **options)
         return 0
     if is_page:
         from flowtex import export

@@ -19,6 +19,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 from urllib.parse import urlsplit
 
+from flowtex._util.addresses import ADDRESS, data_advice
 from flowtex._util.arguments import checked_path, checked_source
 from flowtex.errors import FieldError, import_extra
 
@@ -30,9 +31,6 @@ T = TypeVar("T")
 FORMAT = "flowtex-pyramid-6"  #: Format of every store; a reader refuses any other.
 BUILDING = "building.json"  #: The object of a store that names the process which builds it.
 DOCUMENT = "zarr.json"
-#: A URL, also after ``pathlib`` has made a path of it, on Windows with backslashes. URLs of files
-#: are paths, and a single letter is a drive.
-_URL = re.compile(r"^(?!file:)([A-Za-z][A-Za-z0-9+.-]+):[/\\]{1,2}(?=[^/\\])")
 _FILE_URL = re.compile(r"^file:/{1,3}(?=[^/])")
 _WEB = ("http", "https")  #: Schemes of web servers.
 _AZURE = ("abfs", "abfss", "adl", "az", "azure")  #: Schemes of Azure's storage.
@@ -92,10 +90,10 @@ def place_text(place: str | Path) -> str:
         text = str(checked_path("store", place))
     else:
         text = place
-    if not _URL.match(text):
+    if not ADDRESS.match(text):
         checked_path("store", text)
         return str(checked_source(_FILE_URL.sub("/", text)))
-    url = _URL.sub(r"\1://", text).replace("\\", "/")
+    url = ADDRESS.sub(r"\1://", text).replace("\\", "/")
     try:
         parts = urlsplit(url)
         user, _, host = parts.netloc.rpartition("@")
@@ -121,7 +119,7 @@ def place_text(place: str | Path) -> str:
 
 def is_remote(place: str | Path) -> bool:
     """Return whether a place is a URL."""
-    return bool(_URL.match(str(place)))
+    return bool(ADDRESS.match(str(place)))
 
 
 def objects_at(place: str | Path, *, patient: bool = False) -> ObjectStore:
@@ -262,6 +260,9 @@ def _remote_document(text: str) -> bytes:
     try:
         return bytes(obstore.get(objects_at(text), DOCUMENT).bytes())
     except Exception as error:
+        advice = data_advice(text)
+        if advice:
+            raise PyramidError(f"{text}: {advice}") from None
         # OPeNDAP and other services answer so to an unknown name.
         if isinstance(error, FileNotFoundError) or "status code: 400" in str(error):
             return b""

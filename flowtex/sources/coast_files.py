@@ -46,7 +46,10 @@ def as_coast(source: Any) -> Any:
     if isinstance(source, (str, os.PathLike)):
         path = checked_source(source)
         if not path.exists():
-            raise FieldError(f"coastlines is {str(source)!r}, which does not exist; {EXPECTED}")
+            raise FieldError(
+                f"{source}: the file of coastlines does not exist; expected a GeoJSON, shapefile "
+                "or GeoPackage with lines or polygons"
+            )
         return _read(str(path), path.stat().st_mtime_ns)
     if not hasattr(source, "__geo_interface__"):
         raise FieldError(f"coastlines is {brief(source)}; {EXPECTED}")

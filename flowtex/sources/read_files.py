@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 import numpy as np
 
+from flowtex._util.addresses import address_of, data_advice
 from flowtex._util.child.worker import is_child
 from flowtex.errors import FieldError, require_pyvista
 from flowtex.field.field_arrays import SourceArrays
@@ -165,8 +166,6 @@ _KNOWN_FORMATS = (
     ".foam, .xdmf and more) or meshio (.msh, .med and more), PLOT3D (.xyz with .q beside it), or a "
     "dataset or table (.nc, .zarr, .grib, .json, .geojson, .csv, .txt, .vec)"
 )
-#: A URL that ``pathlib`` has turned into a path; one letter is a drive.
-_ADDRESS = re.compile(r"[A-Za-z][A-Za-z0-9+.-]+:[/\\]")
 
 
 @dataclass(frozen=True)
@@ -231,10 +230,11 @@ def _case_problem(file: Path, case: Path | None) -> str:
 
 def _path_problem(file: Path) -> str:
     """Return why nothing can be read from a path, before any reader opens it; empty otherwise."""
-    if _ADDRESS.match(str(file)) and not file.exists():
-        return (
+    address = address_of(file)
+    if address and not file.exists():
+        return data_advice(address) or (
             "this address has no flowtex pyramid, and files are read only from folders; open the "
-            "data with xarray.open_dataset or xarray.open_zarr, and pass the dataset"
+            f'data with xarray, as in flowtex.show(xarray.open_zarr("{address}"))'
         )
     case = case_of(file)
     if problem := _case_problem(file, case):

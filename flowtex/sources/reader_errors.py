@@ -17,6 +17,7 @@ from xml.etree.ElementTree import ParseError
 
 import numpy as np
 
+from flowtex._util.addresses import address_of
 from flowtex._util.array_types import AnyArray
 from flowtex._util.forks import ProcessLock
 from flowtex._util.memory import check_memory
@@ -44,7 +45,7 @@ def errors_of_file(path: str | Path) -> Iterator[None]:
     FieldError
         When the ``with`` block raises an error of a reader, or VTK reports one.
     """
-    file = Path(path).expanduser()
+    file = address_of(path) or Path(path).expanduser()
     cause: Exception | None = None
     has_vtk = find_spec("pyvista") is not None  # other readers do not need it
     with _VTK_GLOBALS, without_locks(), _vtk_log() if has_vtk else nullcontext() as catcher:

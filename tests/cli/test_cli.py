@@ -155,7 +155,12 @@ def test_a_picture_is_drawn_along_the_flow(
         ("render {gyre} -o {tmp}/a.png --axes scale", "axes is 'scale', but only browsers draw"),
         ("render {gyre} -o {tmp}/a.png --beside lod", "such as --beside lod=false"),
         ("render {gyre} -o {tmp}/a.png --beside smaples=3", "did you mean 'samples'?"),
-        ("render {gyre}", "--output"),
+        ("render {gyre}", "missing option --output: picture to write"),
+        ("render {gyre} -o {tmp}/a.png --coastlines-file {tmp}/no.shp", "no.shp: the file of"),
+        (
+            "render {gyre} -o {tmp}/a.png --u a --v b --vectors c",
+            "--vectors c --u a --v b is given",
+        ),
         ("render {gyre} --opacty 1", "Did you mean --opacity?"),
         ("render {gyre} --slize z=0", "Did you mean --size?"),
         ("export {gyre} -o {tmp}/page.png", "page.png'; expected a name that ends in .html"),
@@ -285,7 +290,7 @@ def test_info_lists_blocks_and_times(run: Run, tmp_path: Path) -> None:
     table = "0 Base/Tip 1 StructuredGrid 4 × 3 × 2"
     for words in ("blocks 2", "times 2: 0.5, 1", table, "least at t = 0.5", "(magnitude)"):
         assert words in out
-    assert 'choose one, as in block="Base/Tip 1"' in out
+    assert 'choose one, as in --block "Base/Tip 1"' in out
     code, out, _ = run("info", tmp_path / "wing.cgns", "--block", "Base/Body", "--plane", "k=0")
     assert "6 × 3 (i × j)" in out and "times 2, 0.5 to 1" in out
     assert run("info", tmp_path / "wing.cgns", "--block", "1", "--plane", "k=0") == (code, out, "")

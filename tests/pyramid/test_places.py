@@ -52,6 +52,16 @@ def test_secrets_are_refused_and_not_repeated(place: str) -> None:
         assert caught.value.__cause__ is None
 
 
+#: Data at addresses, and words of the error.
+DATA = {
+    "winds.nc": "Download the file",
+    "thredds/dodsC/model/best.ncd": "OPeNDAP",
+    "thredds/dodsC/model": "OPeNDAP",
+    "winds.grib2": "Download the file",
+    "points.csv": "Download the file",
+}
+
+
 @pytest.mark.parametrize("status", [400, 404])
 def test_a_url_is_looked_at_before_it_is_called_a_store(tmp_path: Path, status: int) -> None:
     """Other Zarr has no such attribute, and OPeNDAP no such object."""
@@ -68,9 +78,17 @@ def test_a_url_is_looked_at_before_it_is_called_a_store(tmp_path: Path, status: 
         server.fault = lambda path: 403
         with pytest.raises(PyramidError, match=r"zarr.json is missing or access is denied \(403\)"):
             is_store(server.address)
+        server.fault = lambda path: 404
         with pytest.raises(FieldError, match="this address has no flowtex pyramid"):
-            server.fault = lambda path: 404
-            FlowField.from_file(server.address + "flow.nc")
+            FlowField.from_file(server.address + "flow")
+        for name, words in DATA.items():
+            address = server.address + name
+            for ask in (is_store, FlowField.from_file):
+                with pytest.raises(FieldError, match=words) as caught:
+                    ask(address)
+                assert str(caught.value).startswith(f"{address}: only Zarr stores")
+                assert f"curl -LO {address}" in str(caught.value) or "dodsC" in name
+                assert f'open_dataset("{address}")' in str(caught.value) or "csv" in name
     with pytest.raises(PyramidError, match="no server answers at this address"):
         is_store("http://127.0.0.1:9/flow.zarr")
 

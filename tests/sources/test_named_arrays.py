@@ -87,7 +87,7 @@ def test_files_of_matlab_have_columns_of_times(tmp_path: Path) -> None:
     io = pytest.importorskip("scipy.io")
     series = {"U": np.stack([U] * 3, axis=-1), "V": np.stack([V] * 3, axis=-1)}
     io.savemat(tmp_path / "radar.mat", {"X": X, "Y": Y, "T": [[3.0], [4.0], [6.0]], **series})
-    with pytest.raises(FieldError, match=r'use flowtex.show\(scipy.io.loadmat\("radar.mat"\)\)'):
+    with pytest.raises(FieldError, match=r'use flowtex.show\(scipy.io.loadmat\(".*radar.mat"\)\)'):
         FlowField.from_file(tmp_path / "radar.mat")
     arrays = io.loadmat(tmp_path / "radar.mat")
     with pytest.raises(FieldError, match=r"times first: .* np.moveaxis\(u, -1, 0\)"):

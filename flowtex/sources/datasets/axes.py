@@ -14,7 +14,7 @@ from flowtex._util.array_types import AnyArray, Floats, Indices
 from flowtex.errors import FieldError
 from flowtex.field import units
 from flowtex.field.dates import ENDS, as_seconds, span_since
-from flowtex.field.options import FieldOptions
+from flowtex.field.options import OF_MESHES, FieldOptions
 from flowtex.remedies import Remedy
 from flowtex.sources.datasets import labels
 from flowtex.sources.datasets.levels import LEVELS, pressure_unit, surface_level
@@ -78,6 +78,13 @@ class Choice:
             When a name of ``sel`` or ``isel`` is no axis, or an axis of the surface.
         """
         for name in {*self.sel, *self.isel} - self.used:
+            if name in OF_MESHES and name not in drawn:
+                raise FieldError(f"{name} applies to meshes, but this is a dataset; omit it")
+            if name not in drawn and not names:
+                raise FieldError(
+                    f"the axis {name!r} does not exist; the data have no axis besides those of the "
+                    f"surface, {' and '.join(sorted(drawn))}, so omit it"
+                )
             if name not in drawn:
                 text = near_names(name, sorted(names))
                 raise FieldError(f"the axis {name!r} does not exist; {text}")

@@ -480,7 +480,9 @@ def _in_degrees(
         usable = all(f.any() for f in finite)
     if not usable:
         raise FieldError(
-            f"{lon.name} and {lat.name} are NaN everywhere; expected positions of the nodes"
+            f"{lon.name} and {lat.name} are NaN everywhere; expected positions of the nodes. Open "
+            "the file that has them together with this one, or set them, as in "
+            f"ds[{str(lon.name)!r}] = (dims, longitudes)"
         )
     spans = [float(np.ptp(part[np.isfinite(part)])) for part in (a, b)]
     by_span = all(low <= s <= high for s, (low, high) in zip(spans, RADIANS, strict=True))
@@ -494,7 +496,10 @@ def _in_degrees(
     if far > 90.001 or wide > 720:
         if all(units.parsed(unit) is not None for unit in given):
             text = f"{lat.name} reaches {far:g} and {lon.name} {wide:g}"
-            raise FieldError(f"{text} in magnitude; expected degrees, up to 90 and 360")
+            raise FieldError(
+                f"{text} in magnitude; expected degrees, up to 90 and 360. If they are lengths, "
+                f'set their units, as in ds[{str(lat.name)!r}].attrs["units"] = "m"'
+            )
         return None
     return a, b
 

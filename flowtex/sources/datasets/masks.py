@@ -134,8 +134,15 @@ def find_masks(
     named = {str(name): ds[name] for ds in reversed(datasets) for name in ds.variables}
     named = {name: a for name, a in named.items() if a.ndim and a.dtype.kind in "fiub"}
     if wanted is not None and wanted not in named:
-        words = near_names(str(wanted), named)
-        raise FieldError(f"mask is {wanted!r}; {words} (False draws all values)")
+        own = {str(array.name) for array in velocity}
+        others = [name for name, array in named.items() if array.ndim > 1 and name not in own]
+        words = ""
+        if others:
+            words = f"; {near_names(str(wanted), others)}"
+        raise FieldError(
+            f"mask is {wanted!r}, but the data have no such variable{words}. To draw all values, "
+            "use mask=False"
+        )
     for name, array in named.items():
         if wanted in (None, name):
             mask = _mask(array, name, is_flag=name in beside, is_wanted=wanted is not None)

@@ -13,8 +13,10 @@ if TYPE_CHECKING:
     import xarray as xr
 
 
-def placed_on(ds: xr.Dataset, x: str | None, y: str | None) -> xr.Dataset:
+def placed_on(ds: xr.Dataset, x: str | None, y: str | None, *, as_dims: bool = False) -> xr.Dataset:
     """Return a dataset whose only positions are two coordinates, across and upward.
+
+    The user gave them as ``dims`` or, by default, as ``x`` and ``y``.
 
     Raises
     ------
@@ -25,17 +27,25 @@ def placed_on(ds: xr.Dataset, x: str | None, y: str | None) -> xr.Dataset:
         return ds
     if x is None or y is None:
         raise FieldError(f"x is {x!r} and y is {y!r}; expected the names of both, or none")
-    for argument, name in (("x", x), ("y", y)):
+    given = f"x is {x!r} and y is {y!r}"
+    exchanged = f"x={y!r}, y={x!r}"
+    if as_dims:
+        given = f"dims is '{x},{y}'"
+        exchanged = f"dims='{y},{x}'"
+    for name in (x, y):
         if name not in ds.variables:
             hint = near_names(name, map(str, ds.coords))
-            raise FieldError(f"{argument} is {name!r}, which the data do not have; {hint}")
-    _check_order(x, y)
+            raise FieldError(f"{given}, but the data have no {name!r}; {hint}")
+    if _are_exchanged(x, y):
+        raise FieldError(
+            f"{given}, which are exchanged; use {exchanged}: flows are drawn with north, or y, up"
+        )
     across = ds[x]
     upward = ds[y]
     are_lines = across.ndim == upward.ndim == 1 and across.dims != upward.dims
     if not are_lines and (across.ndim != 2 or {*across.dims} != {*upward.dims}):
         raise FieldError(
-            f"x is {x!r} along {', '.join(map(str, across.dims))} and y is {y!r} along "
+            f"{given}, along {', '.join(map(str, across.dims))} and "
             f"{', '.join(map(str, upward.dims))}; expected two axes, or two coordinates over both"
         )
     surface = {*across.dims, *upward.dims}
@@ -51,14 +61,12 @@ def placed_on(ds: xr.Dataset, x: str | None, y: str | None) -> xr.Dataset:
     return ds
 
 
-def _check_order(x: str, y: str) -> None:
-    """Raise a FieldError if longitude and latitude, or x and y, are exchanged."""
+def _are_exchanged(x: str, y: str) -> bool:
+    """Return whether longitude and latitude, or x and y, are exchanged."""
     for first, second in ((LATITUDE, LONGITUDE), (UPWARD, ACROSS)):
         if first.match(x) and second.match(y):
-            raise FieldError(
-                f"x is {x!r} and y is {y!r}, which are exchanged; expected x={y!r}, y={x!r}: flows "
-                "are drawn with north, or y, up"
-            )
+            return True
+    return False
 
 
 def _is_known(ds: xr.Dataset, name: str) -> bool:

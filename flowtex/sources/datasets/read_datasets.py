@@ -162,7 +162,7 @@ def _on_named(datasets: Datasets, dims: str) -> Datasets:
     placed = []
     for ds in datasets:
         if {x, y} <= {*ds.variables} or len(datasets) == 1:
-            placed.append(placed_on(ds, x, y))
+            placed.append(placed_on(ds, x, y, as_dims=True))
         else:
             placed.append(ds)
     changed = Datasets(placed, datasets.closers, recognised=True)

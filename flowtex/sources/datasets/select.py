@@ -555,6 +555,9 @@ def _no_pair(datasets: Sequence[xr.Dataset]) -> str:
         text = _text(u, source)
         for _, rest, wanted in (*_partners(text, source), *_partners(text, source, FIRST_OF)):
             if _rank(u, source, rest) not in (None, 5, 6):
+                other = next((a for a in arrays if _text(a, source) == wanted), None)
+                if other is not None:
+                    return _of_other_units(u, other, text, source)
                 return (
                     f"the data have one component of a velocity, {u.name!r}, but not the other "
                     f"one, whose {source.replace('_', ' ')} would be {wanted!r}; open the file "
@@ -569,6 +572,18 @@ def _no_pair(datasets: Sequence[xr.Dataset]) -> str:
     return (
         "no two variables are recognised as the components of a velocity, in a unit such as m/s; "
         f"the variables are {listed}. Name the components, as in u=..., v=...{_with_angle(arrays)}"
+    )
+
+
+def _of_other_units(u: xr.DataArray, other: xr.DataArray, text: str, source: str) -> str:
+    """Return the text of the error for partners of which the other one has no unit of velocity."""
+    names = [str(u.name), str(other.name)]
+    if _text(other, source) not in {partner for _, _, partner in _partners(text, source)}:
+        names.reverse()
+    return (
+        f"{names[0]} and {names[1]} are named like the components of a velocity, but the unit of "
+        f"{other.name} is {str(other.attrs.get('units', ''))!r}; expected one such as m/s. If it "
+        f'is wrong, use u="{names[0]}", v="{names[1]}", velocity_unit="m/s"'
     )
 
 

@@ -41,6 +41,8 @@ MOST_MEMBERS = 100_000
 PARALLEL = (".pvti", ".pvtp", ".pvtr", ".pvts", ".pvtu")
 #: Documents of a group, and of all arrays.
 DOCUMENTS = ("zarr.json", ".zgroup", ".zmetadata")
+#: First bytes of files that Git LFS has not fetched.
+LFS_MAGIC = b"version https://git-lfs"
 GRIB_MAGIC = b"GRIB"
 GRIB_END = b"7777"  #: Last bytes of a message.
 #: Sections that may follow one of edition 2; after a last 7 a message repeats some, or ends.
@@ -137,11 +139,7 @@ def _inspect(path: Path, data: Data, *, whole: bool, is_piece: bool) -> tuple[Pa
     if head.startswith(MAGICS):
         check_netcdf(data, whole=whole)
     elif suffix in NETCDF and not is_hdf5:
-        if head:
-            beginning = f"it begins with {head[:8]!r}"
-        else:
-            beginning = "it is empty"
-        raise FieldError(f"this is not a NetCDF file: {beginning}; expected 'CDF', or HDF5")
+        raise FieldError(f"this is not a NetCDF file: {_other_content(head)}")
     if head.startswith(GRIB_MAGIC) or suffix.startswith(GRIB_SUFFIXES):
         check_grib(data)
     if suffix == ".vtk":
@@ -155,6 +153,23 @@ def _inspect(path: Path, data: Data, *, whole: bool, is_piece: bool) -> tuple[Pa
     if suffix in vtk_files.SUFFIXES or vtk_files.is_xml(head):
         return tuple(vtk_files.check_vtk_xml(path, data, is_piece=is_piece))
     return ()
+
+
+def _other_content(head: bytes) -> str:
+    """Return what a file is that begins like no NetCDF, and a remedy."""
+    if not head:
+        return "it is empty; write or copy it again"
+    if head.startswith(LFS_MAGIC):
+        return "it is a pointer of Git LFS; get its content by git lfs pull"
+    if head.lstrip().startswith(b"<"):
+        return (
+            "it is HTML or XML, which servers send with an error or in place of a login; open it "
+            "as text to read it, and download the data again"
+        )
+    return (
+        f"it begins with {head[:8]!r}; expected 'CDF', or HDF5. If it has another format, give it "
+        "the ending of that, such as .grib or .csv; otherwise write or copy it again"
+    )
 
 
 def check_zarr(folder: Path) -> None:

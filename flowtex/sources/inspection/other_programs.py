@@ -98,7 +98,7 @@ def advice_of(path: Path) -> str:
     if found is None:
         return ""
     what, line = found
-    return f"this is {what}, which flowtex does not open itself; use {line.format(name=path.name)}"
+    return f"this is {what}, which flowtex does not open itself; use {line.format(name=path)}"
 
 
 def _of_hdf5(path: Path) -> str:

@@ -17,11 +17,12 @@ from form_table import FORMS, data_of
 from supported import ROWS, shown
 
 from flowtex import FlowField
+from flowtex.cli.console import typed
 from flowtex.cli.options import FLAT, FieldFlags, arguments
 from flowtex.errors import FieldError, Notice
 from flowtex.field import units
 from flowtex.field.options import FieldOptions
-from flowtex.remedies import Remedy, for_page, for_shell
+from flowtex.remedies import Remedy, for_page
 from flowtex.scene.fields import read_field
 
 pytest.importorskip("pyproj")
@@ -96,10 +97,10 @@ def check_notices(data: Any, options: dict[str, Any], notices: list[Notice]) -> 
     for notice in notices:
         for remedy in notice.remedies:
             assert remedy.in_python in str(notice)
-            assert remedy.in_shell in for_shell(str(notice), notice.remedies)
-            typed = eval(f"dict({remedy.in_python})")
-            assert typed == {remedy.name: remedy.value}
-            assert typed_in_shell(remedy.in_shell) == typed
+            assert remedy.in_shell in typed(str(notice))
+            argument = eval(f"dict({remedy.in_python})")
+            assert argument == {remedy.name: remedy.value}
+            assert typed_in_shell(remedy.in_shell) == argument
             changed, again = noticed(data, **with_option(options, remedy.name, remedy.value))
             assert str(notice) not in map(str, again), f"{remedy.in_python} leaves {notice}"
             assert selects(changed, remedy), f"{remedy.in_python} gives {changed.reading}"
@@ -248,8 +249,8 @@ def test_page_names_its_controls() -> None:
     controls = {"plane": "Plane", "slice": "Plane"}
     words = for_page(text, remedies, controls)
     assert words == 'the plane is "k=2"; choose another with the control Plane'
-    assert for_page(text, remedies, {}) == for_shell(text, remedies)
-    assert for_shell(text, remedies).endswith("--plane j=3, or cut anywhere, as in --slice z")
+    assert for_page(text, remedies, {}) == typed(text)
+    assert typed(text).endswith("--plane j=3, or cut anywhere, as in --slice z")
 
 
 @pytest.mark.parametrize(
