@@ -12,7 +12,7 @@ complex numbers, i + j sqrt(-1), so that one gather takes both components.
 
 A flow that varies is composed only when its lags are whole numbers of its equal time steps, so that
 each piece begins at a time for which there are slices. Close to a pole paths are integrated, as
-those of neighbours pass it on either side.
+those of neighbours pass it on either side; few of them are, by :mod:`flowtex.trace.pole_rings`.
 """
 
 from __future__ import annotations
@@ -27,6 +27,7 @@ import numpy as np
 from flowtex._util.array_types import AnyArray, Bools, Complexes, Floats, Floats32, Indices
 from flowtex._util.progress import check
 from flowtex.field import FlowField
+from flowtex.trace.pole_rings import PoleRings
 from flowtex.trace.sampler import Corners, NodeGrid
 
 #: Most pieces of a path, after which the rest is looked up at once despite its error.
@@ -65,8 +66,11 @@ class Map(Protocol):
 #: Returns whether paths are followed at positions (2, n), (n,).
 Within = Callable[[Floats], Bools]
 #: Follows paths from positions (2, n), by lags (n,), from time steps (n,), as long as ``Within``:
-#: displacements (2, n), lags covered, and lags at which they end, infinite if they do not.
-Integrate = Callable[[Floats32, Floats, Indices, Within | None], tuple[Floats32, Floats, Floats]]
+#: displacements (2, n), lags covered, lags at which they end, infinite if they do not, and which
+#: paths circle in one place.
+Integrate = Callable[
+    [Floats32, Floats, Indices, Within | None], tuple[Floats32, Floats, Floats, Bools]
+]
 
 
 def landings(field: FlowField, lags: Floats, unit: Floats) -> Indices | None:
@@ -98,13 +102,14 @@ def landings(field: FlowField, lags: Floats, unit: Floats) -> Indices | None:
 class SideSlices:
     """Slices of one direction, (M + 1, T, J, I, 2), the first of them the slope at lag zero.
 
-    Their reach, and which paths have come close to a pole, are (T, J, I). While paths are
-    integrated, the nodes of all three are one axis.
+    Their reach, which paths have come close to a pole, and which circle in one place, are (T, J,
+    I). While paths are integrated, the nodes of all are one axis.
     """
 
     slices: Floats32
     reach: Floats32
     polar: Bools
+    circling: Bools
 
     @property
     def displacement(self) -> Floats32:
@@ -134,13 +139,16 @@ def compose(
     """
     counts = np.maximum(np.searchsorted(lags, longest / unit) + 1, direct)
     lookup = _SliceLookup(field, lags, unit, side, landing * int(direction), counts)
-    if field.surface.poles is None:
-        beside = None
-    else:
+    poles = field.surface.poles
+    beside = None
+    rings = None
+    if poles is not None:
         beside = integrate
+        if lookup.grid.endless:
+            rings = PoleRings.of(poles, field.shape)
     for m in range(1, len(lags) + 1):
         if m > direct:
-            _Doubling(lookup, m, beside).run(run)
+            _Doubling(lookup, m, beside, rings).run(run)
         if m == len(lags):
             break
         if m <= direct:
@@ -208,6 +216,7 @@ class _SliceLookup:
         self._endless = False
         #: Which nodes have a path that has come close to a pole, (T, J, I).
         self.polar = side.polar
+        self.circling = side.circling.reshape(-1)  #: Which paths stay in one place, (T * J * I,).
 
     def judge(self, m: int, share: float) -> None:
         """Find the cells where the error of slice m is ``share`` times that allowed."""
@@ -325,7 +334,13 @@ class _SliceLookup:
 class _Doubling:
     """Continuation of paths, (T * J * I,) of them, from one slice to the next."""
 
-    def __init__(self, lookup: _SliceLookup, m: int, integrate: Integrate | None) -> None:
+    def __init__(
+        self,
+        lookup: _SliceLookup,
+        m: int,
+        integrate: Integrate | None,
+        rings: PoleRings | None,
+    ) -> None:
         count = len(lookup.reach)
         nodes = lookup.grid.size
         before = lookup.knots[m - 1]
@@ -335,15 +350,12 @@ class _Doubling:
         self._before = before
         self._moved = lookup.slices[m]
         self._moved[:] = lookup.slices[m - 1]
-        going = np.tile(lookup.counts.ravel() >= m, count // nodes)
         #: Paths that are followed, ``None`` for all; the others stay where they are.
-        if going.all():
-            self._which = None
-        else:
-            self._which = np.flatnonzero(going)
+        self._which = _followed(lookup, m, rings)
         self._whole = lag * lookup.unit
         self._left = np.tile((lag - before) * lookup.unit, count // nodes)
         self._integrate = integrate
+        self._rings = rings
         self._stuck: list[Indices] = []
         self._suspects: list[tuple[AnyArray, ...]] = []
         self._step = lookup.clipped(np.arange(count) // nodes + lookup.landing[m - 1])
@@ -376,6 +388,11 @@ class _Doubling:
             blocks = _parts(unfinished)
         if self._suspects:
             self._find_ends()
+        if self._rings is not None:
+            size = self._lookup.grid.size
+            sets = self._moved.reshape(-1, size), self._lookup.reach.reshape(-1, size)
+            for moved, reach in zip(*sets, strict=True):
+                self._rings.fill(moved, reach)
 
     def follow(self, selection: Selection, longest: np.float32 | None) -> Indices:
         """Continue some paths by a piece, and return those that must go further."""
@@ -435,12 +452,14 @@ class _Doubling:
         else:
             within = lookup.stuck
         scale = lookup.scale
-        moved, covered, ends = self._integrate(position, left.astype(float) * scale, step, within)
+        lag = left.astype(float) * scale
+        moved, covered, ends, circling = self._integrate(position, lag, step, within)
         covered = covered / scale
         ends = ends / scale
         self._moved[which] += moved[0] + 1j * moved[1]
         self._left[which] = left - covered
         lookup.polar.reshape(-1)[which] = True
+        lookup.circling[which] = circling
         new = np.isinf(lookup.reach[which]) & np.isfinite(ends)
         whole = self._whole[self._node(which)]
         lookup.reach[which[new]] = self._lag * (1 - (left - ends)[new] / whole[new])
@@ -496,6 +515,17 @@ class _Doubling:
     def _outside(self, start: Floats32, lag: Floats32, step: Indices) -> Bools:
         moved = self._lookup.displaced(start, lag, step)
         return ~self._lookup.grid.alive(start + _rows(moved), BORDER_CELLS)
+
+
+def _followed(lookup: _SliceLookup, m: int, rings: PoleRings | None) -> Indices | None:
+    """Return the paths that are followed to slice m, ``None`` for all."""
+    going = lookup.counts.ravel() >= m
+    if rings is not None:
+        going &= rings.followed
+    going = np.tile(going, len(lookup.reach) // len(going)) & ~lookup.circling
+    if going.all():
+        return None
+    return np.flatnonzero(going)
 
 
 def _numbers(selection: Selection, which: Indices) -> Indices:

@@ -48,6 +48,7 @@ class Paths:
     #: Which paths left the region in which they are followed, (N,): ``reach`` is the lag at which
     #: they did, and all later positions are the one where they did.
     interrupted: Bools
+    circling: Bools  #: Which paths stay within a small part of a cell, (N,), with infinite reach.
 
 
 def integrate(
@@ -77,7 +78,8 @@ def integrate(
             run.end_circling()
         run.advance()
     run.go_straight(run.state, run.state.rate)
-    return Paths(np.moveaxis(run.out, 1, 2), run.reach / unit, run.polar, run.interrupted)
+    positions = np.moveaxis(run.out, 1, 2)
+    return Paths(positions, run.reach / unit, run.polar, run.interrupted, run.circling)
 
 
 @dataclass
@@ -174,7 +176,7 @@ class _Run:
         self.next_lags = np.append(lags, np.inf)
         self.out = np.repeat(start[None], len(lags), axis=0)
         self.reach = np.full(count, np.inf)
-        self.polar, self.interrupted = np.zeros((2, count), dtype=bool)
+        self.polar, self.interrupted, self.circling = np.zeros((3, count), dtype=bool)
         if self.charts is not None:
             self.polar |= self.charts.close(start)
         self.state = self._first_state(start, unit)
@@ -219,6 +221,7 @@ class _Run:
         if circling.any():
             self.go_straight(state.pick(circling), np.zeros((2, circling.sum())))
             self.reach[state.which[circling]] = np.inf
+            self.circling[state.which[circling]] = True
             self.state = state.pick(~circling)
 
     def advance(self) -> None:

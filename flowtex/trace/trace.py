@@ -421,6 +421,7 @@ class _Tracing:
                 np.zeros((len(self.lags) + 1, *shape, 2), np.float32),
                 np.zeros(shape, np.float32),
                 np.zeros(shape, bool),
+                np.zeros(shape, bool),
             )
         with _threads() as run:
             self._integrate(sides, direct, run)
@@ -466,6 +467,7 @@ class _Tracing:
             slices[:, target] = moved
             reach[target] = result.reach
             side.polar[step, target] = result.polar
+            side.circling[step, target] = result.circling
 
         steps = range(len(self.samplers))
         blocks = [slice(first, first + BLOCK) for first in range(0, len(at), BLOCK)]
@@ -480,11 +482,12 @@ class _Tracing:
         lag: Floats,
         step: Indices,
         within: Within | None,
-    ) -> tuple[Floats32, Floats, Floats]:
+    ) -> tuple[Floats32, Floats, Floats, Bools]:
         """Follow some paths, an :data:`flowtex.trace.compose.Integrate`."""
         moved = np.empty_like(position)
         covered = lag.copy()
         ends = np.empty_like(lag)
+        circling = np.zeros(len(lag), dtype=bool)
         numbers = [0]
         if len(self.samplers) > 1:
             numbers = np.unique(step).tolist()
@@ -502,7 +505,8 @@ class _Tracing:
             moved[:, group] = (result.positions[0] - start).T
             covered[group] = np.where(result.interrupted, result.reach, 1.0) * unit
             ends[group] = np.where(result.interrupted, np.inf, result.reach) * unit
-        return moved, covered, ends
+            circling[group] = result.circling
+        return moved, covered, ends, circling
 
     def _as_grids(self, flat: SideSlices, direction: float) -> SideSlices:
         """Lay out by nodes, with the slope at lag zero; blank nodes move as the nearest one."""
@@ -514,7 +518,9 @@ class _Tracing:
             # In place: the slices are large, and few of them are blank.
             rows, columns = nearest_known(self.followed)
             slices[:, :, blank] = slices[:, :, rows[blank], columns[blank]]
-        return SideSlices(slices, flat.reach.reshape(-1, *grid), flat.polar.reshape(-1, *grid))
+        reach = flat.reach.reshape(-1, *grid)
+        polar = flat.polar.reshape(-1, *grid)
+        return SideSlices(slices, reach, polar, flat.circling.reshape(-1, *grid))
 
 
 def lyapunov_exponent(field: FlowField, horizon: float) -> Steps:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from importlib import import_module
 from typing import Any
 
 import numpy as np
@@ -91,6 +92,54 @@ def test_a_rotation_that_varies_is_composed_over_the_poles() -> None:
         away = np.linalg.norm(field.surface.at(slices.nodes + moved) - there, axis=-1) / row
         assert np.quantile(away, 0.99) < 0.06
         assert away.max() < 0.1
+
+
+# --- few paths are integrated beside a pole -------------------------------------------------
+
+
+@pytest.fixture
+def followed(monkeypatch: pytest.MonkeyPatch) -> list[Floats]:
+    """Starts (N, 2) of the paths that are integrated, by call."""
+    module = import_module("flowtex.trace.trace")
+    integrate = module.integrate
+    starts: list[Floats] = []
+
+    def recorded(sampler: Any, start: Floats, *rest: Any, **options: Any) -> Any:
+        starts.append(start)
+        return integrate(sampler, start, *rest, **options)
+
+    monkeypatch.setattr(module, "integrate", recorded)
+    return starts
+
+
+def test_most_paths_around_a_pole_lie_between_those_that_are_integrated(
+    followed: list[Floats],
+) -> None:
+    field = rotation(Z, rows=73, columns=288)
+    row = np.pi / 72
+    lags = row * 0.25 * 2.0 ** np.arange(8)
+    slices = trace(field, lags=lags, parameter="time", compose=True, two_sided=False)
+    first, *later = followed
+    assert len(first) == field.valid.size
+    # Ten lines of 288 nodes are close to the poles.
+    assert later
+    assert max(map(len, later)) < 0.2 * 10 * 288
+    for m, lag in enumerate(lags):
+        there = exact(field, Z, lag, forward=False)
+        away = np.linalg.norm(places(field, slices, m) - there, axis=-1) / row
+        assert np.max(away[[*range(6), *range(-6, 0)]]) < 0.01 + 0.004 * lag / row
+
+
+def test_paths_that_circle_in_a_pole_are_integrated_once(followed: list[Floats]) -> None:
+    points = frames(37, 72)[0]
+    # The centre of the rotation lies a little beside the pole.
+    field = FlowField.from_arrays(points, np.cross((1e-5, 0.0, 1.0), points))
+    trace(field, compose=True, two_sided=False)
+    first, *later = followed
+    at_poles = [np.isin(starts[:, 1], [0.0, 36.0]).sum() for starts in (first, *later)]
+    assert at_poles[0] == 2 * 73
+    assert len(later) > 3
+    assert sum(at_poles[1:]) <= 2
 
 
 # --- other ways over a pole -----------------------------------------------------------------

@@ -371,7 +371,8 @@ def formula_paths(
             reach[np.isinf(reach) & ~within(positions[n].T)] = lag
         before = lag
     is_gone = np.isfinite(reach)
-    return Paths(positions, reach, np.zeros(len(reach), dtype=bool), is_gone)
+    nothing = np.zeros(len(reach), dtype=bool)
+    return Paths(positions, reach, nothing, is_gone, nothing)
 
 
 def formula_orbit(

@@ -171,7 +171,7 @@ def triangle_paths(
     positions[:, usable] = surface.index_of(paths.triangle, weights)
     reach[usable] = paths.reach
     nothing = np.zeros(len(start), dtype=bool)
-    return Paths(positions, reach, nothing, nothing)
+    return Paths(positions, reach, nothing, nothing, nothing)
 
 
 def _mesh(field: FlowField) -> TriangleMesh:
