@@ -252,7 +252,9 @@ class FieldData:
             if self.uncertainty == NO_DATA:
                 known &= np.asarray(self.scalars[NO_DATA][step]) < 1
             elif self.has_late_gaps:
-                known &= ~np.isnan(self.scalars["speed"][step])
+                # The speed may be one of the data, with gaps of its own.
+                at_rest = ~np.any(self.velocity[step], axis=-1)
+                known &= ~(np.isnan(self.scalars["speed"][step]) & at_rest)
         return known
 
     @property

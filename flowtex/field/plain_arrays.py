@@ -28,6 +28,7 @@ from flowtex._util.array_types import AnyArray
 from flowtex._util.host_arrays import host_array, unit_text
 from flowtex.errors import FieldError
 from flowtex.field import units
+from flowtex.field.matched_labels import check_positions, has_labels, labelled_lines, matched
 from flowtex.field.steps import LazySteps
 
 #: The forms, for messages.
@@ -88,6 +89,8 @@ def plain_grid(points: Any, velocity: Any, components: Sequence[Any]) -> PlainFl
 
 def _pair(points: Any, velocity: Any) -> PlainFlow:
     """Return positions and velocity, reordered unless their shapes are the usual ones."""
+    if has_labels(points) and has_labels(velocity):
+        return read_plain((points, velocity))
     try:
         shape = np.shape(host_array("velocity", velocity))
         is_usual = len(shape) in (3, 4) and shape[-1] in COMPONENTS
@@ -101,6 +104,7 @@ def _pair(points: Any, velocity: Any) -> PlainFlow:
 def read_plain(arrays: Sequence[Any]) -> PlainFlow:
     """Return the flow of one to six arrays; raise a FieldError that names their shapes."""
     places, parts = _by_role(arrays)
+    places, parts = _by_labels(places, parts)
     positions, length_unit = _in_one_unit(("x", "y", "z"), places)
     names: tuple[str, ...] = ("u", "v", "w")
     if len(parts) == 1:
@@ -116,6 +120,24 @@ def read_plain(arrays: Sequence[Any]) -> PlainFlow:
         rows, columns = velocity.shape[-3:-1]
         points = np.arange(float(columns)), np.arange(float(rows))
     return PlainFlow(points, velocity, scattered=scattered, **flow_units)
+
+
+def _by_labels(places: Sequence[Any], parts: Sequence[Any]) -> tuple[Sequence[Any], Sequence[Any]]:
+    """Return positions and components in one order of labels; labels are positions if need be."""
+    if not any(map(has_labels, (*places, *parts))):
+        return places, parts
+    sizes = set(map(np.shape, (*places, *parts)))
+    names = (*"xyz"[: len(places)], *"uvw"[: len(parts)])
+    if len(sizes) == 1 and len(parts) > 1 and max(map(len, sizes)) == 1:
+        # Rows of a table.
+        arrays = matched(names, (*places, *parts))
+        return arrays[: len(places)], arrays[len(places) :]
+    if len(parts) > 1:
+        parts = matched(names[len(places) :], parts)
+        check_positions("u", parts[0], places)
+    if not places:
+        places = labelled_lines(parts) or ()
+    return places, parts
 
 
 def _by_role(arrays: Sequence[Any]) -> tuple[Sequence[Any], Sequence[Any]]:

@@ -35,6 +35,17 @@ SPELLINGS = (
 )
 
 
+#: A number before or behind a unit, or a power such as 10^-2.
+_NUMBER = (
+    r"(?:10\s*(?:(?:\^|\*\*)\s*(?=[-+\d])|(?=[-+]))(?P<power>[-+]?\d{1,2})"
+    r"|(?P<number>\d+\.?\d*(?:e[-+]?\d{1,2})?))"
+)
+_SCALED = (
+    re.compile(rf"{_NUMBER}\s*[*·×]?\s*(?!e[-+]?\d)(?P<unit>[a-z°µμ].*)", re.IGNORECASE),
+    re.compile(rf"(?P<unit>.*[^*·×\s])\s*[*·×]\s*{_NUMBER}", re.IGNORECASE),
+)
+
+
 @cache
 def registry() -> Any:
     """Return pint's registry with CF's units, which takes a second at first."""
@@ -46,10 +57,38 @@ def registry() -> Any:
     return units
 
 
-@cache
 def parsed(text: str) -> Any:
-    """Return pint's unit of a text; ``None`` for no unit, or one that pint does not know."""
+    """Return pint's unit of a text; ``None`` for no unit, or one that pint does not know.
+
+    That of ``"0.01 m/s"`` is m/s, see :func:`scaled`.
+    """
+    return scaled(text)[1]
+
+
+def scaled(text: str) -> tuple[float, Any]:
+    """Return the number in a unit such as ``"0.01 m/s"``, else 1, and pint's unit or ``None``."""
+    number, bare = without_number(text)
+    return number, _unit_of(bare)
+
+
+@cache
+def without_number(text: str) -> tuple[float, str]:
+    """Return the number in a unit, and the rest of it: 0.01 and ``"m/s"`` of ``"0.01 m/s"``."""
     text = text.strip()
+    if _unit_of(text) is not None:
+        return 1.0, text
+    for pattern in _SCALED:
+        match = pattern.fullmatch(text)
+        if match is None:
+            continue
+        value = float(match["number"] or f"1e{match['power']}")
+        if _unit_of(match["unit"]) is not None and value > 0:
+            return value, str(match["unit"])
+    return 1.0, text
+
+
+@cache
+def _unit_of(text: str) -> Any:
     if text.lower() in NONE:
         return None
     for pattern, replacement in SPELLINGS:
@@ -83,11 +122,11 @@ def is_angle(text: str) -> bool:
 
 def factor(unit: str, other: str) -> float | None:
     """Return the factor from a unit to another one; ``None`` where they measure other things."""
-    one = parsed(unit)
-    two = parsed(other)
+    number, one = scaled(unit)
+    divisor, two = scaled(other)
     if one is None or two is None or one.dimensionality != two.dimensionality:
         return None
-    return float(registry().Quantity(1.0, one).to(two).magnitude)
+    return float(registry().Quantity(number, one).to(two).magnitude) / divisor
 
 
 def unit_remedy(name: str, assumed: str) -> Remedy:
@@ -105,10 +144,13 @@ def unit_remedy(name: str, assumed: str) -> Remedy:
 
 def symbol(text: str) -> str:
     """Return the short form of a unit for legends, as ``"m/s"`` for ``"m s-1"``."""
-    unit = parsed(text)
+    number, unit = scaled(text)
     if unit is None or not unit.dimensionality:
         return text
-    return f"{unit:~C}".replace("**", "^")
+    short = f"{unit:~C}".replace("**", "^")
+    if number == 1.0:
+        return short
+    return f"{number:g} {short}"
 
 
 def speed_unit(length: str, time: str) -> str:

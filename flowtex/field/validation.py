@@ -307,9 +307,7 @@ def filled_gaps(
         numbers = _steps_to_compare(velocity)
         masks: list[Bools] | Bools = [_known(velocity[number]) for number in numbers]
         if len(numbers) < len(velocity) > 1 and isinstance(scalars, Mapping):
-            # A step that is read later may lack data: there the speed is missing, and not 0.
-            speeds = {"speed": map_steps(velocity, _speed), **scalars}
-            without_gaps = velocity, speeds, {"speed": unit, **(units or {})}, ""
+            without_gaps = _with_late_gaps(velocity, scalars, units or {}, unit)
     else:
         try:
             velocity = with_gaps("velocity", velocity)
@@ -326,9 +324,23 @@ def filled_gaps(
         return without_gaps
     whole = map_steps(velocity, partial(_filled, sometimes))
     data = dict(scalars)
-    data.setdefault(NO_DATA, map_steps(velocity, _lacking))
+    data.setdefault(NO_DATA, map_steps(velocity, lacking))
     data.setdefault("speed", map_steps(velocity, _speed))
     return whole, data, {"speed": unit, **(units or {})}, NO_DATA
+
+
+def _with_late_gaps(
+    velocity: LazySteps, scalars: Mapping[str, Any], units: Mapping[str, str], unit: str
+) -> tuple[Any, Mapping[str, Any], Mapping[str, str], str]:
+    """Return a velocity of which steps that are read later may lack data, and the scalar for that.
+
+    There the speed is missing, and not 0. Where the data have a speed with other gaps, their reader
+    has marked those of the velocity.
+    """
+    if NO_DATA in scalars:
+        return velocity, scalars, units, NO_DATA
+    speeds = {"speed": map_steps(velocity, _speed), **scalars}
+    return velocity, speeds, {"speed": unit, **units}, ""
 
 
 def _steps_to_compare(velocity: LazySteps) -> list[int]:
@@ -344,7 +356,8 @@ def _filled(sometimes: Bools, step: Floats) -> Floats:
     return np.where((sometimes & ~_known(step))[..., None], 0.0, step)
 
 
-def _lacking(step: Floats) -> Floats:
+def lacking(step: Floats) -> Floats:
+    """Return 1 at nodes that lack data, 0 elsewhere."""
     return np.where(_known(step), 0.0, 1.0)
 
 

@@ -255,7 +255,8 @@ class MapOverlay(Overlay):
         meshes: list[tuple[pv.PolyData, float, Any]] = []
         # Behind a transparent flow there is the background instead of land.
         tiled = self._scene.pyramid is not None and self._scene.appearance.opacity == 1
-        ground = ground_cells(self._field, tiled=tiled)
+        coast = coast_of(self._scene.appearance)
+        ground = ground_cells(self._field, tiled=tiled, coast=coast)
         if ground.land.any():
             meshes.append((self._mesh_of(ground.land), -LAND_FARTHER, color))
         if ground.missing.any():

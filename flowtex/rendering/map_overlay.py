@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -96,13 +97,16 @@ def map_lines(
     return {"coastlines": whole, "graticule": graticule(projection).and_(fine_graticule)}
 
 
-def ground_cells(field: FlowField, *, tiled: bool = False) -> Ground:
+def ground_cells(field: FlowField, *, tiled: bool = False, coast: Coast | None = None) -> Ground:
     """Return which cells without data are land and which only lack data; see empty_cells.
 
-    Coasts decide. Masks of models do not match them exactly: what lies within a cell or two of
-    land is land as well.
+    Coasts decide, or lines of the user that close, see :func:`on_land`. Masks of models do not
+    match them exactly: what lies within a cell or two of land is land as well.
     """
-    return _grounds.get(tiled, lambda: _ground_of(field, tiled=tiled), owner=field)
+    if coast is not None and not coast.is_closed:
+        coast = None
+    make = partial(_ground_of, field, tiled=tiled, coast=coast)
+    return _grounds.get((tiled, coast), make, owner=field)
 
 
 def missing_colour(background: Sequence[float]) -> Floats:
@@ -111,14 +115,14 @@ def missing_colour(background: Sequence[float]) -> Floats:
     return np.asarray(background, dtype=float) * (1 - MISSING_SHARE) + (ink * MISSING_SHARE)
 
 
-def ground_kinds(field: FlowField) -> tuple[str, ...]:
+def ground_kinds(field: FlowField, coast: Coast | None = None) -> tuple[str, ...]:
     """Return what a legend says of places without data: ``LAND`` and ``NO_DATA``, or nothing.
 
     Land alone needs no legend. The globe around a field that covers a part of it has no data.
     """
     if field.projection is None:
         return ()
-    ground = ground_cells(field)
+    ground = ground_cells(field, coast=coast)
     has_globe = globe_radius(field) is not None
     if not has_globe and not ground.missing.any():
         return ()
@@ -127,18 +131,21 @@ def ground_kinds(field: FlowField) -> tuple[str, ...]:
     return (NO_DATA,)
 
 
-def ground_colours(field: FlowField, land: Any, background: Any) -> dict[str, Floats]:
+def ground_colours(
+    field: FlowField, land: Any, background: Any, coast: Coast | None = None
+) -> dict[str, Floats]:
     """Return the kinds of places without data, with their colours from 0 to 1.
 
-    ``land`` and ``background`` are colours; without land nothing is drawn there.
+    ``land`` and ``background`` are colours; without land nothing is drawn there. ``coast`` are
+    lines of the user.
     """
     if land is None:
         return {}
     colours = {LAND: np.asarray(rgb(land)), NO_DATA: missing_colour(rgb(background))}
-    return {kind: colours[kind] for kind in ground_kinds(field)}
+    return {kind: colours[kind] for kind in ground_kinds(field, coast)}
 
 
-def _ground_of(field: FlowField, *, tiled: bool) -> Ground:
+def _ground_of(field: FlowField, *, tiled: bool, coast: Coast | None) -> Ground:
     empty = empty_cells(field, tiled=tiled)
     nothing = np.zeros_like(empty)
     if field.projection is None or not empty.any():
@@ -153,7 +160,7 @@ def _ground_of(field: FlowField, *, tiled: bool) -> Ground:
     corners = surface.points.reshape(-1, 3)[surface.nodes_of(asked)]
     lon, lat = field.projection.lonlat(corners.mean(axis=1))
     land = np.zeros_like(empty)
-    land[asked] = on_land(lon, lat)
+    land[asked] = on_land(lon, lat, coast)
     if empty.ndim == 2:
         land = empty & _with_fringe(land, empty, step)
     return Ground(land, empty & ~land)

@@ -31,6 +31,7 @@ from flowtex.rendering.webgl.marks import (
     RIM_COLOR,
     KindMark,
 )
+from flowtex.scene.options import coast_of
 from flowtex.scene.scene import Scene
 
 Marks = list[tuple[str, Any]]  #: Characters on top of each other, with their colours.
@@ -423,7 +424,8 @@ class _Writer:
         appearance = scene.appearance
         if not appearance.visible:
             return {}
-        colours = ground_colours(scene.field, appearance.land, self._background)
+        coast = coast_of(appearance)
+        colours = ground_colours(scene.field, appearance.land, self._background, coast)
         rows: dict[str, Marks] = {}
         for name, colour in colours.items():
             red, green, blue = np.rint(255 * colour).astype(int).tolist()

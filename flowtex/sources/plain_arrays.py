@@ -19,6 +19,7 @@ from flowtex._util.host_arrays import host_array, is_array, unit_text
 from flowtex.errors import FieldError, import_extra, notify
 from flowtex.field import units
 from flowtex.field.field import FlowField
+from flowtex.field.matched_labels import matched
 from flowtex.field.options import FieldOptions
 from flowtex.field.plain_arrays import PlainFlow, read_plain
 from flowtex.field.validation import with_gaps
@@ -178,6 +179,7 @@ def in_components(speed: Any, angle: Any, options: FieldOptions) -> tuple[AnyArr
     FieldError
         When the shapes differ, or ``components`` is for components.
     """
+    speed, angle = matched(("speed", "direction"), (speed, angle))
     length = host_array("the speed", speed)
     turn = host_array("direction", angle)
     if np.iscomplexobj(length) or np.iscomplexobj(turn) or length.shape != turn.shape:
@@ -284,8 +286,7 @@ def _read_named(data: Any, options: FieldOptions, scalars: Mapping[str, Any]) ->
         if is_array(data[key]):
             known.setdefault(key.lower(), key)
     if len({np.shape(data[key]) for key in known.values()}) == 1 and np.ndim(data[keys[0]]) == 1:
-        columns = {key: host_array(key, data[key]) for key in known.values()}
-        frame = import_extra("pandas", "xarray").DataFrame(columns)
+        frame = _frame_of(data, list(known.values()))
         return field_of_dataset(frame, replace(options, uncertainty=None))
     lon_lat = _first(EARTH_PLACES, known)
     places = _first(PLACES, known) or lon_lat
@@ -317,6 +318,15 @@ def _read_named(data: Any, options: FieldOptions, scalars: Mapping[str, Any]) ->
     options = replace(options, vectors=None, times=times)
     on_earth = bool(places) and places == lon_lat
     return _field(flow, options, {**nodal, **scalars}, on_earth=on_earth)
+
+
+def _frame_of(data: Any, names: list[str]) -> Any:
+    """Return arrays (N,) by name as the columns of a table, in one order of their labels."""
+    arrays = matched(names, [data[name] for name in names])
+    columns = {}
+    for name, array in zip(names, arrays, strict=True):
+        columns[name] = host_array(name, array)
+    return import_extra("pandas", "xarray").DataFrame(columns)
 
 
 def _by_position(places: list[Any], velocity: list[Any]) -> tuple[Any, ...]:

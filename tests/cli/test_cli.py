@@ -156,7 +156,10 @@ def test_a_picture_is_drawn_along_the_flow(
         ("render {gyre} -o {tmp}/a.png --beside lod", "such as --beside lod=false"),
         ("render {gyre} -o {tmp}/a.png --beside smaples=3", "did you mean 'samples'?"),
         ("render {gyre}", "missing option --output: picture to write"),
-        ("render {gyre} -o {tmp}/a.png --coastlines-file {tmp}/no.shp", "no.shp: the file of"),
+        (
+            "render {gyre} -o {tmp}/a.png --coastlines-file {tmp}/no.shp",
+            "no.shp', a file that does not exist",
+        ),
         (
             "render {gyre} -o {tmp}/a.png --u a --v b --vectors c",
             "--vectors c --u a --v b is given",

@@ -10,6 +10,10 @@ from flowtex._util.array_types import Bools, Floats
 
 LONGEST_PIECE_DEGREES = 0.5  #: Longest piece of a line between two of its points.
 
+SAME_PLACE_DEGREES = 1e-6  #: Distance up to which two ends of a line are one.
+#: Share of the points in lines that close, from which on the lines are borders of land.
+MOSTLY = 0.9
+
 
 @dataclass(frozen=True, eq=False)
 class Coast:
@@ -18,6 +22,7 @@ class Coast:
     lonlat: Floats  #: Longitudes and latitudes in degrees, (N, 2).
     joined: Bools  #: Whether each point is joined to the next, (N - 1,).
     shown: bool = True
+    is_closed: bool = False  #: Whether the lines close, so that land lies within them.
 
     @classmethod
     def of(cls, lines: list[Floats]) -> Coast:
@@ -28,11 +33,22 @@ class Coast:
         joined[np.cumsum([len(line) for line in fine])[:-1] - 1] = False
         # A piece that goes around the Earth crosses the date line.
         joined &= np.abs(np.diff(lonlat[:, 0])) < 180
-        return cls(lonlat, joined)
+        closed = [len(line) for line in lines if _ends_where_it_began(line)]
+        is_closed = sum(closed) >= MOSTLY * sum(map(len, lines))
+        return cls(lonlat, joined, is_closed=is_closed)
+
+    @property
+    def extent(self) -> Floats:
+        """Least and greatest longitude and latitude, (2, 2)."""
+        return np.stack([self.lonlat.min(axis=0), self.lonlat.max(axis=0)])
 
     def __bool__(self) -> bool:
         """Whether it is drawn."""
         return self.shown
+
+
+def _ends_where_it_began(line: Floats) -> bool:
+    return len(line) > 3 and bool(np.allclose(line[0], line[-1], atol=SAME_PLACE_DEGREES))
 
 
 def with_short_pieces(line: Floats) -> Floats:

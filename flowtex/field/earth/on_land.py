@@ -5,25 +5,44 @@ from __future__ import annotations
 import numpy as np
 
 from flowtex._util.array_types import Bools, Floats
+from flowtex.field.earth.coast import Coast
 from flowtex.field.earth.map_lines import coast_points
 
 COLUMN_DEGREES = 0.01  #: Width of the strips of places that share a meridian; coasts are as exact.
 TURN = 360.0
 
 
-def on_land(lon: Floats, lat: Floats) -> Bools:
+def on_land(lon: Floats, lat: Floats, coast: Coast | None = None) -> Bools:
     """Return which places lie on land; those without a finite longitude and latitude do not.
 
     Parameters
     ----------
     lon, lat
         Longitude and latitude in degrees, arrays of one shape.
+    coast
+        Lines in place of the coasts of the package, where they lie, if they close.
 
     Returns
     -------
     numpy.ndarray
         Booleans of the same shape. Lakes that have a coast are not land.
     """
+    if coast is not None and coast.is_closed:
+        return _on_own_land(lon, lat, coast)
+    return _within(lon, lat, *coast_points())
+
+
+def _on_own_land(lon: Floats, lat: Floats, coast: Coast) -> Bools:
+    """Return which places lie in closed lines, or on land outside the extent of these."""
+    (west, south), (east, north) = coast.extent
+    turned = west + (np.asarray(lon) - west) % TURN
+    inside = (turned <= east) & (lat >= south) & (lat <= north)
+    own = _within(lon, lat, coast.lonlat, coast.joined)
+    return np.where(inside, own, on_land(lon, lat))
+
+
+def _within(lon: Floats, lat: Floats, points: Floats, joined: Bools) -> Bools:
+    """Return which places lie within lines, of points (N, 2) of which some are joined."""
     shape = np.shape(lon)
     flat_lon = np.ravel(lon)
     flat_lat = np.ravel(lat)
@@ -33,7 +52,7 @@ def on_land(lon: Floats, lat: Floats) -> Bools:
     # on land. South of Antarctica's coast this holds as well.
     turned = (flat_lon[known] + TURN / 2) % TURN - TURN / 2
     strips, strip = np.unique(np.rint(turned / COLUMN_DEGREES), return_inverse=True)
-    owner, height = _crossings((strips + 0.5) * COLUMN_DEGREES)
+    owner, height = _crossings((strips + 0.5) * COLUMN_DEGREES, points, joined)
     # Both sorted by strip and by latitude there, as one number.
     keys = np.sort(owner * TURN + height)
     last = np.searchsorted(keys, strip * TURN + TURN / 2)
@@ -42,9 +61,8 @@ def on_land(lon: Floats, lat: Floats) -> Bools:
     return result.reshape(shape)
 
 
-def _crossings(meridians: Floats) -> tuple[Floats, Floats]:
-    """Return where coasts cross ascending meridians: the number of each and the latitude."""
-    points, joined = coast_points()
+def _crossings(meridians: Floats, points: Floats, joined: Bools) -> tuple[Floats, Floats]:
+    """Return where lines cross ascending meridians: the number of each and the latitude."""
     start = points[:-1][joined]
     step = np.diff(points, axis=0)[joined]
     step[:, 0] = (step[:, 0] + TURN / 2) % TURN - TURN / 2

@@ -43,7 +43,7 @@ from flowtex.rendering.cpu.shade import mean_colours
 from flowtex.rendering.map_overlay import ground_colours
 from flowtex.scene.array_arguments import takes_arrays
 from flowtex.scene.fields import is_stored, read_field
-from flowtex.scene.options import Appearance, Options, ViewOptions
+from flowtex.scene.options import Appearance, Options, ViewOptions, coast_of
 from flowtex.scene.scene import make_scenes
 from flowtex.sources.reproject import reprojected
 
@@ -487,7 +487,8 @@ class FlowImage(AxesImage):
         ax = self.axes
         look = self._scene.appearance
         has_ground = False
-        for name, colour in ground_colours(self._flow, look.land, ax.get_facecolor()).items():
+        colours = ground_colours(self._flow, look.land, ax.get_facecolor(), coast_of(look))
+        for name, colour in colours.items():
             handle = Polygon(np.full((3, 2), np.nan), label=name)
             handle.set(facecolor=tuple(colour), edgecolor=EDGE_COLOR)
             ax.add_artist(handle)

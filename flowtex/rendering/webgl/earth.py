@@ -66,7 +66,7 @@ def earth_header(
         "usualHeight": USUAL_HEIGHT_PX,
         "widthRange": WIDTH_RANGE,
         "missingShare": MISSING_SHARE,
-        "kinds": ground_kinds(field),
+        "kinds": ground_kinds(field, coast),
         "spacings": SPACINGS,
         "spacingPixels": SPACING_PX,
         "strokes": [
@@ -86,7 +86,7 @@ def earth_parts(
     parts: Parts = dict(_lines_of(geometry, has_land=has_land, coast=coast).parts)
     if not field.projection.is_globe:
         parts["lonlat"] = _lonlat(field.projection, map_box(field).tobytes())
-    ground = ground_cells(field, tiled=tiled)
+    ground = ground_cells(field, tiled=tiled, coast=coast)
     for name, cells in (("land", ground.land), ("missing", ground.missing)):
         if cells.any() and field.triangles is not None:
             parts[name] = field.triangles[cells].astype("<u4")

@@ -117,10 +117,12 @@ def component_units(pair: Pair, record: Record) -> tuple[str, tuple[float, float
         When the units of the components cannot be converted to each other, or are no units of
         velocity.
     """
+    given = select.velocity_unit(pair.u, any_kind=pair.named)
+    number, one = units.without_number(given)
+    if number != 1.0:
+        record("units", f"{pair.u.name} converted from {given} to {one}")
     if pair.kind in directions.ANGULAR:
-        unit = select.velocity_unit(pair.u, any_kind=pair.named)
-        return unit, (1.0, _angle_factor(pair, record))
-    one = select.velocity_unit(pair.u, any_kind=pair.named)
+        return one, (number, _angle_factor(pair, record))
     other = select.velocity_unit(pair.v, any_kind=pair.named)
     if not one or not other:
         if one != other:
@@ -132,14 +134,16 @@ def component_units(pair: Pair, record: Record) -> tuple[str, tuple[float, float
                 bare = pair.u
             text = f"{bare.name} has no unit, and that of {named.name}, {one or other}, is assumed"
             record("units", text, units.unit_remedy("velocity_unit", one or other), notable=True)
-        return one or other, (1.0, 1.0)
+        if not one:
+            number, other = units.without_number(other)
+        return one or other, (number, number)
     factor = units.factor(other, one)
     if factor is None:
         text = f"the units of {pair.u.name!r} and {pair.v.name!r} are {one!r} and {other!r}, which"
         raise FieldError(f"{text} cannot be converted to each other")
     if factor != 1.0:
         record("units", f"{pair.v.name} converted from {other} to {one}")
-    return one, (1.0, factor)
+    return one, (number, factor)
 
 
 def _angle_factor(pair: Pair, record: Record) -> float:

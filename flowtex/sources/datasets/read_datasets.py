@@ -27,6 +27,7 @@ from flowtex.field.field_arrays import GridArrays, SourceArrays, TriangleArrays
 from flowtex.field.options import OF_MESHES, FieldOptions
 from flowtex.field.steps import LazySteps, examined_steps
 from flowtex.field.uncertainty import spread_name
+from flowtex.field.validation import NO_DATA, lacking
 from flowtex.field.vector_names import magnitude_label
 from flowtex.remedies import Remedy
 from flowtex.sources.datasets import labels, select
@@ -37,6 +38,8 @@ from flowtex.sources.datasets.axes import (
     axis_kind,
     axis_values,
     horizontal_dims,
+    typed_value,
+    value_unit,
 )
 from flowtex.sources.datasets.coordinates import LATITUDE, LONGITUDE
 from flowtex.sources.datasets.flow import Flow, read_flow
@@ -192,7 +195,6 @@ def _whole(
     uncertainty: Any,
 ) -> SourceArrays:
     count = flow.drawn.steps
-    record = flow.record
     nodes, arguments = placed
     # Velocity and speed use the same components.
     read = _steps_of(flow)
@@ -210,19 +212,20 @@ def _whole(
         arguments["velocity_unit"] = units.symbol(flow.unit)
     if nodes.projection is None:
         arguments["vectors"] = flow.name
+    scale = 1.0
     if flat and flow.unit:
         scale = units.factor(flow.unit, "m/s") or 1.0
-    else:
-        scale = 1.0
     if spread is not None:
         extra[spread_name(uncertainty)] = LazySteps(count, spread).map(nodes.at)
     velocity = read.map(partial(_vectors, nodes, scale))
     if count > 1:
-        _note_rest(read, flow)
-        _note_gaps(read, flow)
+        _note_steps(read, flow)
+    if count > 1 and "speed" in extra and not (flat or velocity.quick):
+        # It may have other gaps than the velocity.
+        extra[NO_DATA] = velocity.map(lacking)
     arguments |= {"points": nodes.points, "velocity": velocity if count > 1 else velocity[0]}
     arguments |= {"times": flow.drawn.times, "scalars": extra, "cell_scalars": on_cells}
-    arguments |= {"projection": nodes.projection, "reading": record.reading, **words}
+    arguments |= {"projection": nodes.projection, "reading": flow.record.reading, **words}
     return TriangleArrays(**arguments) if "triangles" in arguments else GridArrays(**arguments)
 
 
@@ -242,6 +245,11 @@ def _vectors(nodes: Placed, scale: float, components: Floats) -> Floats:
     return nodes.vectors(*nodes.components(components)) * scale
 
 
+def _note_steps(read: LazySteps, flow: Flow) -> None:
+    _note_rest(read, flow)
+    _note_gaps(read, flow)
+
+
 def _note_rest(read: LazySteps, flow: Flow) -> None:
     searched = read[:MOST_SEARCHED]
     first = next((n for n, step in enumerate(searched) if is_nonzero(step)), 0)
@@ -249,7 +257,19 @@ def _note_rest(read: LazySteps, flow: Flow) -> None:
         times = np.asarray(flow.drawn.times)[first : first + 1]
         time = f"{labels.text(times)} {flow.drawn.time_unit}".strip()
         text = f"the velocity is zero everywhere in the first step; it is not from step {first} on"
-        flow.record("select", f"{text} ({time})", notable=True)
+        flow.record("select", f"{text} ({time})", *_of_step(flow, first), notable=True)
+
+
+def _of_step(flow: Flow, step: int) -> list[Remedy]:
+    """Return the argument that selects a step of a series, if its times have labels."""
+    axis = next((axis for axis in flow.drawn.axes if axis.kind == TIME), None)
+    if axis is None or axis.line is None:
+        return []
+    label = axis.line[np.atleast_1d(axis.drawn)[step]]
+    if isinstance(label, np.datetime64):
+        label = np.datetime_as_string(label, unit="auto")
+    value = typed_value(label, value_unit(flow.pair.u, axis.dim))
+    return [Remedy("sel", {axis.dim: value}, "to draw this step alone,")]
 
 
 def _note_gaps(read: LazySteps, flow: Flow) -> None:

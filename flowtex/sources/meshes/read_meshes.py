@@ -261,6 +261,8 @@ def _note_rest(flow: Floats, moments: Any, record: Record) -> None:
     if moving and moving[0]:
         when = f"step {moving[0]}" if moments is None else f"time {moments[moving[0]]:g}"
         text = f"the velocity is zero everywhere at the first step; it is not from {when} on"
+        if moments is not None:
+            text = f"{text}, where pictures begin; for another one, time={moments[-1]:g}"
         record("mask", text, notable=True)
 
 

@@ -32,6 +32,7 @@ from flowtex.sources.notices import NOTE, Record
 from flowtex.sources.opening import component_axes, flow_text, rasters, tables
 from flowtex.sources.opening.axis_marks import time_axis, with_axes
 from flowtex.sources.opening.column_values import plain_values
+from flowtex.sources.opening.named_units import with_named_units
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -109,7 +110,8 @@ def as_datasets(data: Any, record: Record | None = None, choice: Choice | None =
             note = part.encoding.get(NOTE)
             if note:
                 record("select", note, notable=True)
-            whole = _one_version(_decoded(part), {*choice.sel, *choice.isel}, record)
+            decoded = with_named_units(_decoded(part), record)
+            whole = _one_version(decoded, {*choice.sel, *choice.isel}, record)
             result.append(component_axes.split_components(whole))
     groups: dict[frozenset[Any], list[xr.Dataset]] = {}
     for ds in result:

@@ -33,6 +33,7 @@ from flowtex.sources.opening import component_axes
 from flowtex.sources.opening.column_levels import has_positions, with_one_level
 from flowtex.sources.opening.column_names import component_names, split_unit
 from flowtex.sources.opening.column_values import column_numbers, without_units
+from flowtex.sources.opening.named_units import name_and_unit
 from flowtex.sources.reader_errors import check_count
 
 if TYPE_CHECKING:
@@ -201,7 +202,7 @@ def _plain(table: Any) -> tuple[Any, dict[str, dict[str, str]]]:
     levels = [name for name in frame.index.names if name is not None]
     if levels:
         frame = frame.reset_index(levels)
-    named = {column: split_unit(str(column)) for column in frame.columns}
+    named = {column: _split(str(column)) for column in frame.columns}
     changes = component_names(name for name, _ in named.values())
     columns = {}
     attributes = {}
@@ -213,6 +214,17 @@ def _plain(table: Any) -> tuple[Any, dict[str, dict[str, str]]]:
     attributes = {**{name: {"units": unit} for name, unit in units.items()}, **attributes}
     numbers = {name: column_numbers(frame[name]) for name in frame if frame.columns.is_unique}
     return frame.assign(**numbers), attributes
+
+
+def _split(column: str) -> tuple[str, str]:
+    """Return the name and the unit of a column; words for units remain in names of values."""
+    name, unit = split_unit(column)
+    if unit:
+        return name, unit
+    stem, unit = name_and_unit(name)
+    if ACROSS.match(stem) or UPWARD.match(stem) or TIMES.match(stem):
+        return stem, unit
+    return name, ""
 
 
 def _pair(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import warnings
 from pathlib import Path
 from typing import Any
 
@@ -97,3 +98,26 @@ def test_groups_are_chosen_by_path(tmp_path: Path) -> None:
         FlowField.from_file(path)
     given = str(caught.value).rpartition(" as in ")[2]  # what it names can be opened
     assert same(whole, FlowField.from_file(ast.literal_eval(given)))
+
+
+@pytest.mark.parametrize("globe", [True, False])
+@pytest.mark.parametrize("has_gaps", [True, False])
+def test_own_speed_with_gaps_does_not_hide_the_velocity(*, globe: bool, has_gaps: bool) -> None:
+    pytest.importorskip("dask")
+    ds = winds(np.arange(0.0, 50, 5), np.arange(0.0, 40, 5))
+    growth = xr.DataArray(np.arange(1.0, 10), dims="time", coords={"time": np.arange(9)})
+    ds = ds.assign({name: (ds[name] * growth).assign_attrs(ds[name].attrs) for name in "uv"})
+    is_late = ds.time > ds.time[0]
+    ds["speed"] = np.hypot(ds.u, ds.v).where(~(is_late & (ds.lon > ds.lon[4])))
+    hole = (ds.time == ds.time[3]) & (ds.lat > ds.lat[-3])
+    if has_gaps:
+        for name in "uv":
+            ds[name] = ds[name].where(~hole).assign_attrs(ds[name].attrs)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        field = FlowField.from_xarray(ds.chunk(time=1), globe=globe)
+        known = [field.known_nodes(step, step) for step in range(9)]
+    for step, here in enumerate(known):
+        lacking = field.valid & ~here
+        assert lacking.any() == (has_gaps and step == 3)
+        assert lacking.sum() in (0, 2 * ds.sizes["lon"])

@@ -185,6 +185,15 @@ def tracks() -> Any:
     return frame.assign(time=pd.to_datetime(frame.time))
 
 
+def at_rest_at_first() -> xr.Dataset:
+    ds = on_axes("y", "x", units="m")
+    times = np.array(["2024-01-01", "2024-01-01T06", "2024-01-01T12"], "datetime64[ns]")
+    series = xr.concat([ds * 0, ds * 0, ds], "time").assign_coords(time=times)
+    for name in ds.data_vars:
+        series[name].attrs = ds[name].attrs
+    return series
+
+
 CHOICES: dict[str, Any] = {
     "plane of a grid": (box, "plane", "slice"),
     "outside of a volume": (
@@ -202,6 +211,7 @@ CHOICES: dict[str, Any] = {
     "dimensions without names": (lambda: on_axes("dim_0", "dim_1"), "dims"),
     "two pairs": (two_pairs, "vectors"),
     "time of drifters": (tracks, "sel", "max_edge"),
+    "rest in the first steps": (at_rest_at_first, "sel"),
     "no units": (
         lambda: (
             on_axes("y", "x", units="m")

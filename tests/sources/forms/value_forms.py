@@ -19,6 +19,74 @@ X, Y = np.linspace(0, 3, 25), np.linspace(0, 1, 16)
 ON_LAND = xr.DataArray(LAND, dims=("lat", "lon"))
 
 
+# --- units --------------------------------------------------------------------------------------
+
+#: Units with a number, and the factor of values in them.
+SCALED = {"10^-2 m/s": 100, "0.01 m s-1": 100, "cm s**-1 * 1e-1": 1000, "10-3 m s-1": 1000}
+
+
+def scaled(ds: Any, factor: float, unit: str) -> Any:
+    """Return a dataset with u and v in another unit, without other attributes."""
+    for name in "uv":
+        ds[name] = (ds[name] * factor).assign_attrs(units=unit)
+    return ds
+
+
+@variants(SCALED, says="converted from")
+def unit_with_a_number(unit: str) -> Any:
+    return scaled(earth(LON, LAT), SCALED[unit], unit), STEADY
+
+
+@variants(SCALED, says="converted from")
+def unit_with_a_number_of_u_alone(unit: str) -> Any:
+    ds = scaled(earth(LON, LAT), SCALED[unit], unit)
+    ds["v"] = earth(LON, LAT).v
+    return ds, STEADY
+
+
+@variants(SCALED)
+def unit_with_a_number_in_the_plane(unit: str) -> Any:
+    ds = scaled(lab(X * 1000, Y * 1000), SCALED[unit], unit)
+    u, v = plane(*np.meshgrid(X, Y))
+    ds = ds.assign(u=(ds.u.dims, u * SCALED[unit], ds.u.attrs))
+    ds = ds.assign(v=(ds.v.dims, v * SCALED[unit], ds.v.attrs))
+    for name in "xy":
+        ds[name].attrs["units"] = "mm"
+    return ds, in_plane(X, Y, unit="m", speed_unit="m/s")
+
+
+@variants(
+    [
+        ("u_cm_s", "v_cm_s"),
+        ("U [cm/s]", "V [cm/s]"),
+        ("u_cms", "v_cms"),
+        ("U (cm s-1)", "V (cm s-1)"),
+    ],
+    says="units by names",
+)
+def unit_in_the_name(names: tuple[str, str]) -> Any:
+    ds = scaled(earth(LON, LAT), 100, "")
+    return ds.rename(dict(zip("uv", names, strict=True))), STEADY
+
+
+@form(says="units by names")
+def unit_in_the_long_name() -> Any:
+    ds = scaled(earth(LON, LAT), 100, "")
+    ds.u.attrs = {"long_name": "eastward velocity (cm/s)"}
+    ds.v.attrs = {"long_name": "northward velocity (cm/s)"}
+    return ds, STEADY
+
+
+@variants([True, False])
+def units_in_the_names_of_places(table: bool) -> Any:
+    ds = lab(X, Y) * 100
+    ds = ds.assign_coords(x=ds.x * 1000, y=ds.y * 1000)
+    ds = ds.rename(x="x_mm", y="y_mm", u="u_cm_s", v="v_cm_s")
+    if table:
+        ds = ds.to_dataframe().reset_index()
+    return ds, in_plane(X, Y, unit="m", speed_unit="m/s")
+
+
 # --- masks --------------------------------------------------------------------------------------
 
 

@@ -275,5 +275,6 @@ def test_notices_name_the_line_that_calls() -> None:
 def test_a_first_step_at_rest_is_told() -> None:
     _, notices = read([step("grid", time) for time in (0.0, 0.5, 1.0)])
     assert notices == [
-        "the velocity is zero everywhere at the first step; it is not from time 0.5 on"
+        "the velocity is zero everywhere at the first step; it is not from time 0.5 on, where "
+        "pictures begin; for another one, time=1"
     ]
