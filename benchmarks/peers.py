@@ -9,7 +9,8 @@ texture and flow in degrees, the coherence of its streaks, and ``sticking``: the
 picture at the same points of the surface, for which the camera has moved farther.
 
 Every case runs in a separate process, one after the other in turn; ``--repeats`` takes the least of
-several. ``--surfaces`` and ``--nodes`` choose others. ``--methods`` draws one plane by other
+several. ``--surfaces`` and ``--nodes`` choose others, ``--large`` up to four million nodes of grids
+and five million triangles. ``--methods`` draws one plane by other
 methods as well: ``vtkStreamTracer`` seeded at random, and PyVista's evenly spaced streamlines.
 """
 
@@ -21,7 +22,7 @@ import math
 import subprocess
 import sys
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -211,17 +212,17 @@ def ratio(over: Row, under: Row, name: str) -> str:
     return "{:.1f} ({:.1f})".format(*np.divide(over[name], under[name]))
 
 
-def compare(names: list[str], sizes: list[int], size: tuple[int, int], repeats: int) -> None:
+def compare(
+    names: list[str], sizes: dict[str, Sequence[int]], size: tuple[int, int], repeats: int
+) -> None:
     """Print the table of surfaces."""
-    from surfaces import GRID_NODES, GRIDS, TRIANGLE_NODES
-
     head = ["surface", "nodes", "cells", "first, s", "LIC", "ours / LIC"]
     head += ["frame, s", "LIC", "LIC / ours", "per tenfold"]
     line(*head, "angle, LIC", "coherence, LIC", "sticking, LIC")
     line(*["---"] * (len(head) + 3))
     for name in names:
         smallest: Row | None = None
-        for nodes in sizes or (GRID_NODES if name in GRIDS else TRIANGLE_NODES):
+        for nodes in sizes[name]:
             both = best([OURS, LIC], name, nodes, size, repeats=repeats)
             ours, lic = both[OURS], both[LIC]
             if isinstance(ours, str) or isinstance(lic, str):
@@ -252,12 +253,20 @@ def compare_methods(size: tuple[int, int], repeats: int) -> None:
 
 def main() -> None:
     """Print a table."""
-    from surfaces import GRIDS, TRIANGLES
+    from surfaces import (
+        GRID_NODES,
+        GRIDS,
+        LARGE_GRID_NODES,
+        LARGE_TRIANGLE_NODES,
+        TRIANGLE_NODES,
+        TRIANGLES,
+    )
 
     names = list(GRIDS | TRIANGLES)
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--surfaces", nargs="*", choices=names, default=names)
     parser.add_argument("--nodes", nargs="*", type=int, default=[], help="sizes of each")
+    parser.add_argument("--large", action="store_true", help="the largest sizes of each")
     parser.add_argument("--size", nargs=2, type=int, default=(800, 600))
     parser.add_argument("--repeats", type=int, default=1)
     parser.add_argument("--methods", action="store_true", help="compare methods on one plane")
@@ -274,7 +283,13 @@ def main() -> None:
     if arguments.methods:
         compare_methods(size, arguments.repeats)
     else:
-        compare(arguments.surfaces, arguments.nodes, size, arguments.repeats)
+        grid_nodes: Sequence[int] = arguments.nodes or GRID_NODES
+        triangle_nodes: Sequence[int] = arguments.nodes or TRIANGLE_NODES
+        if arguments.large:
+            grid_nodes = LARGE_GRID_NODES
+            triangle_nodes = LARGE_TRIANGLE_NODES
+        sizes = dict.fromkeys(GRIDS, grid_nodes) | dict.fromkeys(TRIANGLES, triangle_nodes)
+        compare(arguments.surfaces, sizes, size, arguments.repeats)
 
 
 if __name__ == "__main__":

@@ -40,6 +40,10 @@ PARTS = (
 )
 
 
+#: Middles and radii of the holes of a plane.
+HOLES = ((0.5, 0.3, 0.12), (1.4, 0.6, 0.2), (1.0, 0.8, 0.07), (1.75, 0.2, 0.05), (0.3, 0.75, 0.09))
+
+
 class SurfaceView(NamedTuple):
     """What a camera sees: places, the flow on the screen to the right and up, what to judge."""
 
@@ -130,6 +134,24 @@ def gyre_grid(nodes: int, *, crooked: bool = False) -> Any:
     """Return the double gyre on a sheared, stretched grid, or on a crooked one."""
     rows, columns = shape(nodes, 2)
     return to_grid(gyre_field(columns, rows, crooked=crooked))
+
+
+def holed_grid(nodes: int) -> Any:
+    """Return the double gyre on a crooked grid with holes, whose nodes and cells are hidden."""
+    mesh = gyre_grid(nodes, crooked=True)
+    x, y, _ = np.asarray(mesh.points).T
+    is_hidden = np.zeros(mesh.n_points, dtype=bool)
+    for middle_x, middle_y, radius in HOLES:
+        away_x = x - middle_x
+        away_y = y - middle_y
+        rim = radius * (1 + 0.2 * np.sin(7 * np.arctan2(away_y, away_x)))
+        is_hidden |= np.hypot(away_x, away_y) < rim
+    mesh.hide_points(is_hidden)
+    columns, rows, _ = mesh.dimensions
+    nodes_of_cells = is_hidden.reshape(rows, columns)
+    sides = nodes_of_cells[:-1] | nodes_of_cells[1:]
+    mesh.hide_cells(np.flatnonzero(sides[:, :-1] | sides[:, 1:]), inplace=True)
+    return mesh
 
 
 def o_grid(nodes: int) -> Any:
@@ -261,10 +283,13 @@ def tetrahedra(nodes: int) -> Any:
 #: Nodes of grids, and of triangles, of which a surface has twice as many.
 GRID_NODES = (10_000, 100_000, 1_000_000)
 TRIANGLE_NODES = (20_000, 200_000, 500_000)
+LARGE_GRID_NODES = (1_000_000, 4_000_000)
+LARGE_TRIANGLE_NODES = (650_000, 2_600_000)
 GRIDS: dict[str, Callable[[int], Any]] = {
     "plane": plane,
     "sheared plane": gyre_grid,
     "crooked plane": partial(gyre_grid, crooked=True),
+    "plane with holes": holed_grid,
     "O-grid": o_grid,
     "height field": height_field,
     "wing": wing,

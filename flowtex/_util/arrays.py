@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from flowtex._util.array_types import AnyArray, Floats, Indices
+from flowtex._util.array_types import AnyArray, Bools, Floats, Indices
 
 #: Nodes of a block, so few that what is computed of them stays in a processor's cache.
 BLOCK_NODES = 16384
@@ -63,6 +63,17 @@ def bounds(points: Floats) -> Floats:
             parts.append(reduce(rows, axis=0).reshape(-1, count))
         ends.append(reduce(np.concatenate(parts), axis=0))
     return np.stack(ends)
+
+
+def rows_where(values: AnyArray, chosen: Bools) -> AnyArray:
+    """Return the rows (n, C) of values (..., C) at some places (...).
+
+    A list of numbers is several times as fast as a mask. All rows are not copied.
+    """
+    rows = values.reshape(-1, values.shape[-1])
+    if chosen.all():
+        return rows
+    return np.asarray(rows.take(np.flatnonzero(chosen), axis=0))
 
 
 def is_nonzero(values: AnyArray) -> bool:

@@ -16,6 +16,7 @@ import numpy as np
 
 from flowtex._util.arguments import checked_count, is_number
 from flowtex._util.array_types import Bools, Floats, Indices
+from flowtex._util.arrays import rows_where
 from flowtex.errors import FieldError
 from flowtex.field.earth.projection import Projection
 from flowtex.field.field_arrays import NOTABLE_SHARE, NOTHING, Reading, SectionAxes
@@ -177,11 +178,15 @@ class FieldData:
             return self.surface.normal_share(self.velocity[0])
         if frame is None or isinstance(self.velocity, LazySteps):
             return self.index_velocity.normal_share
-        flow = np.asarray(self.velocity[:, self.valid])
-        total = np.vdot(flow, flow)
-        out = flow @ np.cross(*frame)
+        total = 0.0
+        normal = 0.0
+        for step in self.velocity:
+            flow = rows_where(step, self.valid)
+            out = flow @ np.cross(*frame)
+            total += np.vdot(flow, flow)
+            normal += np.vdot(out, out)
         if total > 0:
-            return float(np.sqrt(min(np.vdot(out, out) / total, 1.0)))
+            return float(np.sqrt(min(normal / total, 1.0)))
         return 0.0
 
     @property

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from flowtex._util.array_types import Bools, Floats
-from flowtex._util.arrays import bounds, dot, norm, row_blocks
+from flowtex._util.arrays import bounds, dot, norm, row_blocks, rows_where
 from flowtex.field.grids.poles import Pole, Poles
 from flowtex.field.steps import Steps
 
@@ -95,9 +95,7 @@ class NodeSurface:
     @property
     def _nodes(self) -> Floats:
         """Positions of the valid nodes, (N, 3)."""
-        if self.valid.all():
-            return self.points.reshape(-1, 3)
-        return self.points[self.valid]
+        return rows_where(self.points, self.valid)
 
     @cached_property
     def _bounds(self) -> Floats:
@@ -109,6 +107,10 @@ class NodeSurface:
     @cached_property
     def frame(self) -> Floats | None:
         """Two orthonormal rows that span the surface where it is flat, (2, 3), else ``None``."""
+        low, high = self._bounds
+        level = np.flatnonzero(low == high)
+        if len(level):
+            return np.delete(np.eye(3), level[0], axis=0)
         nodes = self._nodes
         some = nodes[:: -(-len(nodes) // PLANE_SAMPLE)]
         basis, height = _principal_axes(some - self.center)

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from flowtex._util.array_types import Bools, Floats
+from flowtex._util.arrays import rows_where
 from flowtex._util.host_arrays import host_array, unit_text
 from flowtex.errors import FieldError
 from flowtex.field.dates import as_seconds
@@ -214,6 +215,10 @@ def time_faults(t: Floats | None, count: int) -> list[str]:
     return []
 
 
+#: Nodes of which a surface is expected to span a plane.
+MOST_COMPARED = 10_000
+
+
 def range_faults(p: Floats, v: Floats, ok: Bools) -> list[str]:
     """Return faults in the size of positions, and of velocities, NaN where not valid."""
     faults = []
@@ -243,10 +248,16 @@ def node_faults(p: Floats, ok: Bools) -> list[str]:
             f"{int(ok.sum())} of {ok.size} nodes are usable, but no four of them form a cell; "
             "check the mask"
         ]
-    if ok.all():
-        nodes = p.reshape(-1, p.shape[-1])
-    else:
-        nodes = p[ok]
+    numbers = np.flatnonzero(ok)
+    some = numbers[:: -(-len(numbers) // MOST_COMPARED)]
+    # Hardly any surface is a line for these nodes alone.
+    if not _line_faults(p.reshape(-1, p.shape[-1])[some]):
+        return []
+    return _line_faults(rows_where(p, ok))
+
+
+def _line_faults(nodes: Floats) -> list[str]:
+    """Return the fault of nodes (N, C) that lie at one point or on a line."""
     offsets = nodes - nodes.mean(axis=0)
     if (size := largest(offsets)) == 0:
         return ["all usable nodes lie at one point; expected a surface: check the coordinates"]
@@ -262,7 +273,9 @@ def finite_nodes(a: Floats) -> Bools:
     finite = np.isfinite(a)
     if finite.all():
         return np.ones(a.shape[-3:-1], dtype=bool)
-    return np.asarray(finite.all(axis=(*range(a.ndim - 3), -1)))
+    # NumPy's reduction over few components is slow.
+    columns = np.moveaxis(finite, -1, 0)
+    return np.asarray(np.logical_and.reduce(columns).all(axis=tuple(range(a.ndim - 3))))
 
 
 def largest(a: Floats, where: Bools | bool = True) -> float:  # noqa: FBT001, FBT002

@@ -16,7 +16,7 @@ import scipy
 from numpy.typing import NDArray
 
 from flowtex._util.array_types import AnyArray, Bools, Floats, Indices
-from flowtex._util.arrays import bounds
+from flowtex._util.arrays import bounds, rows_where
 from flowtex.errors import FieldError, raise_faults
 from flowtex.field.checked_nodes import CheckedNodes
 from flowtex.field.field_arrays import GridArrays
@@ -97,7 +97,7 @@ def find_closure(points: Floats) -> tuple[bool, Floats | None]:
     if finite.all():
         low, high = bounds(points)
     else:
-        low, high = bounds(points[finite])
+        low, high = bounds(rows_where(points, finite))
     extent = float(np.linalg.norm(high - low))
     if extent == 0.0:
         return False, None

@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 
 from flowtex._util.array_types import AnyArray, Bools, Floats, Indices
-from flowtex._util.arrays import bounds, norm, row_blocks
+from flowtex._util.arrays import bounds, norm, row_blocks, rows_where
 from flowtex.field.grids.creases import has_creases
 from flowtex.field.grids.poles import Pole, Poles, find_poles
 from flowtex.field.interpolation import cell_of, cubic_weights, fill_blanked
@@ -364,7 +364,7 @@ def known_positions(points: Floats, valid: Bools) -> Bools:
     # If all nodes with coordinates are valid, or none, nothing has to be distinguished.
     if not (valid & finite).any() or not (finite & ~valid).any():
         return finite
-    low, high = bounds(points[valid & finite])
+    low, high = bounds(rows_where(points, valid & finite))
     margin = (high - low).max()
     with np.errstate(invalid="ignore"):
         near = ((points > low - margin) & (points < high + margin)).all(axis=-1)

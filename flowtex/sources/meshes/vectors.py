@@ -18,6 +18,7 @@ import numpy as np
 
 from flowtex._util.arguments import near_names
 from flowtex._util.array_types import AnyArray, Bools, Floats, Indices
+from flowtex._util.arrays import rows_where
 from flowtex.errors import FieldError
 from flowtex.field.vector_names import is_velocity
 from flowtex.remedies import Remedy
@@ -450,10 +451,7 @@ class Masks:
             visible = visible_cells(mesh)
         else:
             visible = ~hidden_nodes(mesh)
-        if visible.all():
-            known = values
-        else:
-            known = values[visible]
+        known = rows_where(values, visible)
         for fill in self._fills:
             known = np.where(known == fill, np.nan, known)
         while not self._keeps_fills and (found := undeclared_fill(known)) is not None:

@@ -49,22 +49,31 @@ def averaged(velocity: Floats, valid: Bools, rows: Indices, columns: Indices) ->
     whole = bool(valid.all())
     for first in range(0, count[0], ROWS):
         block = rows[:, first : first + ROWS]
-        weights = np.zeros((block.shape[1], count[1], 1))
-        total = np.zeros((block.shape[1], *result.shape[1:]))
-        for a in range(3):
-            for b in range(3):
-                at = np.ix_(block[a], columns[b])
-                weight = (1 + a % 2) * (1 + b % 2) / 16
-                if whole:
-                    total += weight * velocity[at]
-                else:
-                    share = weight * valid[at][..., None]
-                    total += share * velocity[at]
-                    weights += share
-        if not whole:
-            total /= np.where(weights > 0, weights, 1.0)
-        result[first : first + ROWS] = total
+        # All lines of the block and those beside them, which follow each other.
+        low = int(block.min())
+        near = slice(low, int(block.max()) + 1)
+        values = velocity[near]
+        if whole:
+            result[first : first + ROWS] = _mean_beside(values, block - low, columns)
+            continue
+        known = valid[near][..., None].astype(np.float64)
+        total = _mean_beside(values * known, block - low, columns)
+        weights = _mean_beside(known, block - low, columns)
+        result[first : first + ROWS] = total / np.where(weights > 0, weights, 1.0)
     return result
+
+
+def _mean_beside(values: Floats, rows: Indices, columns: Indices) -> Floats:
+    """Return means (K, L, C) of values (J, I, C) at rows (3, K) and columns (3, L)."""
+    for axis, lines in ((0, rows), (1, columns)):
+        before, middle, after = (values.take(line, axis=axis) for line in lines)
+        # In place: these are copies.
+        middle *= 2
+        middle += before
+        middle += after
+        middle *= 0.25
+        values = middle
+    return values
 
 
 def beside(lines: Indices, count: int, *, closed: bool) -> Indices:

@@ -12,6 +12,7 @@ from flowtex._util.array_types import Floats
 from flowtex.field import FlowField
 from flowtex.textures.geometry import SurfaceGeometry
 from flowtex.textures.texture_set import TextureSet
+from flowtex.textures.tiles.grid_levels import averaged, beside, level_lines
 from flowtex.textures.tiles.grid_pyramid import GridPyramid, is_cut
 from flowtex.textures.tiles.pyramid import TileKey
 from flowtex.trace.store import SliceStore
@@ -212,3 +213,21 @@ def test_paths_over_a_pole_need_not_all_of_a_long_ring(monkeypatch: pytest.Monke
     away = np.abs(nodal(some)[1:count, ..., :3] - nodal(whole)[1:count, ..., :3])
     assert np.percentile(away, 99) < 0.02
     assert np.abs(nodal(whole)[1:count, ..., :3]).mean() > 0.3
+
+
+@pytest.mark.parametrize("closed", [False, True])
+@pytest.mark.parametrize("holes", [False, True])
+def test_averages_are_those_of_the_nine_nodes_around(closed: bool, holes: bool) -> None:
+    rng = np.random.default_rng(0)
+    velocity = rng.normal(size=(601, 13, 2))
+    valid = np.ones(velocity.shape[:2], dtype=bool)
+    if holes:
+        valid = rng.random(valid.shape) > 0.4
+    lines = [beside(level_lines(n, 1), n, closed=closed) for n in valid.shape]
+    found = averaged(velocity, valid, *lines)
+    weights = np.array([1, 2, 1]) / 4
+    for j, i in [(0, 0), (150, 3), (300, 6), (129, 5)]:
+        at = np.ix_(lines[0][:, j], lines[1][:, i])
+        share = np.outer(weights, weights) * valid[at]
+        total = (share[..., None] * velocity[at]).sum(axis=(0, 1))
+        assert found[j, i] == pytest.approx(total / max(share.sum(), 1e-300))
