@@ -7,7 +7,7 @@ that asks for ``plotter.flowtex``.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from typing import Any
+from typing import Any, Literal, TypeAlias
 from weakref import WeakKeyDictionary, WeakSet
 
 import numpy as np
@@ -31,6 +31,8 @@ from flowtex.textures.images import as_image
 
 COLOURS = "flowtex colours"  #: Name of the colours among the arrays of a mesh.
 WHOLE = ViewOptions()  #: A view of the whole surface.
+#: Which scenes have a bar of colours: the usual ones, those for which users ask, or none.
+Bars: TypeAlias = Literal["usual", "asked", "none"]
 #: Bounds of the objects of renderers, by which their cameras clip.
 _bounds: WeakKeyDictionary[pv.Renderer, Any] = WeakKeyDictionary()
 
@@ -135,13 +137,19 @@ class FlowtexComponent:
         scene: Scene,
         *,
         scalar_bar_args: Mapping[str, Any] | None = None,
+        may_have_bar: bool = True,
         reset_camera: bool | None = None,
         **actor_options: Any,
     ) -> FlowHandle:
-        """Draw a scene; the parameters are as for :meth:`add`."""
+        """Draw a scene, by default with its bar; other parameters are as for :meth:`add`."""
         first = not self._plotter.renderer.actors
         handle = FlowHandle(
-            self._plotter, scene, self._handles.remove, scalar_bar_args, **actor_options
+            self._plotter,
+            scene,
+            self._handles.remove,
+            scalar_bar_args,
+            may_have_bar=may_have_bar,
+            **actor_options,
         )
         self._handles.append(handle)
         if reset_camera or (reset_camera is None and first):
@@ -281,13 +289,14 @@ def open_plotter(
     margin: float = CAMERA_LIMITS.margin,
     outline_samples: int = 0,
     labels: bool = True,
+    bars: Bars = "usual",
     scalar_bar_args: Mapping[str, Any] | None = None,
     **options: Any,
 ) -> tuple[Any, list[FlowHandle]]:
     """Return a plotter with one scene or two side by side, and the handles of their textures.
 
     The ``options`` go to the PyVista plotter. Two scenes share a camera, and labels show how they
-    differ.
+    differ. Scenes have their usual ``bars`` of colours, only those that users ask for, or none.
 
     Raises
     ------
@@ -311,7 +320,13 @@ def open_plotter(
         handles = []
         for column, scene in enumerate(scenes):
             plotter.subplot(0, column)
-            handles.append(plotter.flowtex.add_scene(scene, scalar_bar_args=scalar_bar_args))
+            may_have_bar = bars == "usual"
+            if bars == "asked":
+                may_have_bar = scene.appearance.show_scalar_bar is True
+            handle = plotter.flowtex.add_scene(
+                scene, scalar_bar_args=scalar_bar_args, may_have_bar=may_have_bar
+            )
+            handles.append(handle)
             if labels and len(scenes) > 1:
                 text = difference_text(scene, view.beside or {})
                 label = plotter.add_text(text, font_size=9, color="black")

@@ -86,6 +86,8 @@ class FlowHandle(AppearanceAttributes):
         scene: Scene,
         forget: Callable[[FlowHandle], None],
         scalar_bar_args: Mapping[str, Any] | None = None,
+        *,
+        may_have_bar: bool = True,
         **actor_options: Any,
     ) -> None:
         bar_options = checked_bar_options(scalar_bar_args)
@@ -100,12 +102,16 @@ class FlowHandle(AppearanceAttributes):
         )
         bar = FlowBar(plotter, use_flow_mapper(actor, mesh), bar_options)
         surface = FlowSurface(actor, renderer, scene.drawn, scene.settings)
-        end = scene.observe(self._changed)
         self.scene = scene
         self.actor = actor
         self.bar = bar
-        self._plotter, self._renderer, self._forget = plotter, renderer, forget
-        self.surface, self._shown_time, self._end = surface, scene.time, end
+        self._may_have_bar = may_have_bar
+        self._plotter = plotter
+        self._renderer = renderer
+        self._forget = forget
+        self.surface = surface
+        self._shown_time = scene.time
+        self._end = scene.observe(self._changed)
         self._shown: Appearance | None = None
         #: What the flow was read from, and how, and the state in which that was.
         self._source: tuple[Any, FieldOptions] | None = None
@@ -113,10 +119,14 @@ class FlowHandle(AppearanceAttributes):
         self._map = MapOverlay(actor, renderer, scene, surface)
         self._structure = StructureOverlay(actor, renderer, scene, surface)
         self._show_appearance()
-        FrameSteps.of(renderer).add(Step.CHANGES, self._before_frame)
-        props = renderer.GetViewProps()
-        self._props_observer = props.AddObserver("ModifiedEvent", weak_callback(self._check_actor))
+        self._follow_renderer()
         self._is_made = True
+
+    def _follow_renderer(self) -> None:
+        """Take part in each frame, and notice when the actor is removed."""
+        FrameSteps.of(self._renderer).add(Step.CHANGES, self._before_frame)
+        props = self._renderer.GetViewProps()
+        self._props_observer = props.AddObserver("ModifiedEvent", weak_callback(self._check_actor))
 
     @property
     def time(self) -> float:
@@ -354,7 +364,8 @@ class FlowHandle(AppearanceAttributes):
     def _show_bar(self) -> None:
         """Show the bar of the colours, or remove it where the scene has none."""
         name = self.scene.scalar_name
-        if name is None or not self.scene.has_bar:
+        has_bar = self._may_have_bar and self.scene.has_bar
+        if name is None or not has_bar:
             self.bar.remove()
             return
         title = self.scene.title_of(name)

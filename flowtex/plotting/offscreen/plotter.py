@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from contextlib import closing
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -13,7 +12,7 @@ from flowtex._util.arguments import checked_size
 from flowtex._util.array_types import Bytes
 from flowtex.errors import FieldError, notify
 from flowtex.field.options import FieldOptions, accepts_options
-from flowtex.plotting.component import WHOLE, open_plotter, point_camera
+from flowtex.plotting.component import WHOLE, Bars, open_plotter, point_camera
 from flowtex.rendering.camera import CAMERA_LIMITS, read_camera
 from flowtex.rendering.diagnostics import require_opengl
 from flowtex.rendering.vtk.contexts import uninterrupted
@@ -58,9 +57,9 @@ class OffscreenPlotter:
         require_opengl()
         notify_section(scenes[0].field.section)
         self._legend = scenes[0].has_bar
-        for scene in scenes:
-            if annotations or scene.appearance.show_scalar_bar is None:
-                scene.appearance = replace(scene.appearance, show_scalar_bar=False)
+        bars: Bars = "asked"
+        if annotations:
+            bars = "none"
         self._supersampling = supersampling
         self._margin = margin
         self._view = view
@@ -74,6 +73,7 @@ class OffscreenPlotter:
             margin=margin,
             outline_samples=outline_samples,
             labels=not annotations,
+            bars=bars,
             off_screen=True,
             lighting="light kit",
         )
