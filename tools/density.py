@@ -17,10 +17,10 @@ from pathlib import Path
 
 #: Greatest numbers in flowtex.
 LIMITS = {
-    "comprehensions": 20.5,
-    "conditional expressions": 5.8,
-    "parallel assignments": 1.5,
-    "bodies over 40 lines": 13.0,
+    "comprehensions": 19.5,
+    "conditional expressions": 4.9,
+    "parallel assignments": 0.8,
+    "bodies over 40 lines": 11.0,
     "nested comprehensions": 41.0,
     "nested conditional expressions": 3.0,
 }

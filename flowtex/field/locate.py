@@ -219,7 +219,9 @@ class Locator:
         inside, far = closest(points[numbers], corners[:, 0], corners[:, 1], corners[:, 2])
         nearer = far < best[numbers]
         which = numbers[nearer]
-        best[which], at[which], shares[which] = far[nearer], triangle[nearer], inside[nearer]
+        best[which] = far[nearer]
+        at[which] = triangle[nearer]
+        shares[which] = inside[nearer]
         return which
 
     def _walk(self, points: Floats, nearest: tuple[Floats, Indices, Floats]) -> None:
@@ -281,7 +283,8 @@ def _on_border(at: Floats, nodes: Floats) -> Floats:
         closer = far < best
         best = np.where(closer, far, best)
         result[closer] = 0.0
-        result[closer, k], result[closer, n] = 1 - share[closer], share[closer]
+        result[closer, k] = 1 - share[closer]
+        result[closer, n] = share[closer]
     return result
 
 

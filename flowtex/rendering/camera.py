@@ -203,7 +203,8 @@ class Camera:
             )
         # A curved one from a side, so far away that the whole of it just fits.
         side = _side(center) if surface.on_globe else (ASIDE, UP)
-        ahead, up = np.array(toward or side[0], dtype=float), up or side[1]
+        ahead = np.array(toward or side[0], dtype=float)
+        up = up or side[1]
         ahead /= np.linalg.norm(ahead)
         right = np.cross(np.asarray(up, dtype=float), ahead)
         right /= np.linalg.norm(right)

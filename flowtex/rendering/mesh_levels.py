@@ -357,7 +357,8 @@ class TriangleBlocks:
 
     def __init__(self, geometry: TriangleGeometry) -> None:
         #: Centre, radius and longest side of a triangle of each block, (rows, columns, 5).
-        self.blocks, self._masks = geometry.block_places, geometry.blocks
+        self.blocks = geometry.block_places
+        self._masks = geometry.blocks
 
     def levels(self, eye: Floats | None, half_height: float, pixels: int) -> Ints:
         """Return the level of each block, (block rows, block columns): 0, which has every node."""

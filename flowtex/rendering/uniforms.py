@@ -118,7 +118,8 @@ def uniforms(textures: TextureSet, settings: Settings, view: ViewState) -> dict[
     # A power of two, so that it is exact.
     finest = float(2.0 ** (np.floor(np.log2(geometry.extent)) - NOISE_DOUBLINGS))
     sides, kernel = _direction(textures, settings)
-    moving, sparse = is_moving(textures, settings, view), is_sparse(textures, settings)
+    moving = is_moving(textures, settings, view)
+    sparse = is_sparse(textures, settings)
     eye = geometry.frame @ (view.eye[:3] - view.eye[3] * geometry.center)
     eye -= view.eye[3] * view.anchor
     values: dict[str, Any] = {

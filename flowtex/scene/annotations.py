@@ -293,7 +293,8 @@ class _Writer:
             closer = CLOSER
         else:
             closer = 1.0
-        self.gap, self._pad = self._px(closer * GAP), self._px(closer * PADDING)
+        self.gap = self._px(closer * GAP)
+        self._pad = self._px(closer * PADDING)
         self._background = rgb(background)
         light = is_light(self._background)
         if light:

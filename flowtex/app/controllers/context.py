@@ -61,7 +61,9 @@ class Controller:
 
     def __init__(self, context: Context) -> None:
         self.context = context
-        self.state, self.area, self.stream = context.state, context.area, context.area.stream
+        self.state = context.state
+        self.area = context.area
+        self.stream = context.area.stream
         self.viewport = context.area.viewport
         context.controllers.append(self)
 

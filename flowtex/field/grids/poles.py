@@ -179,7 +179,8 @@ class Poles:
             past = (x - pole.line) * pole.inward < 0
             x[past] = 2 * pole.line - x[past]
             y[past] = pole.opposite(y[past])
-        result[c][outside], result[a][outside] = x, y
+        result[c][outside] = x
+        result[a][outside] = y
         return result
 
     def mirrored(self, position: AnyArray) -> Bools:

@@ -228,7 +228,8 @@ class _Border(Locator):
         along = np.linspace(start, end, ALONG)
         inwards = np.linspace(border, other, INWARDS)
         grid = np.zeros((ALONG, INWARDS, 3))
-        grid[..., self._number], grid[..., 1 - self._number] = along[:, None], inwards
+        grid[..., self._number] = along[:, None]
+        grid[..., 1 - self._number] = inwards
         lon, lat = self._projection.lonlat(grid)
         # Outside of a map with an outline, PROJ returns places of the other side.
         mapped_back = self._projection.positions(lon, lat)

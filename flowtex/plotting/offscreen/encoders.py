@@ -185,7 +185,8 @@ def _encode_mp4(new: WholeFile, size: Size, fps: float, quality: int) -> Encoder
     rate = Fraction(fps).limit_denominator(1001)
     with av.open(str(new.part), "w", format="mp4", options={"movflags": "+faststart"}) as movie:
         stream = movie.add_stream("libx264", rate=rate, options=factor)
-        (stream.width, stream.height), stream.pix_fmt = size, "yuv420p"
+        stream.width, stream.height = size
+        stream.pix_fmt = "yuv420p"
         codec = stream.codec_context
         codec.colorspace = BT709
         codec.color_primaries = BT709

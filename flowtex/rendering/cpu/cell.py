@@ -53,7 +53,8 @@ class CellPath:
 
     def leave(self) -> None:
         """Return to the fragments, to follow a side of the paths."""
-        self._at, self._alive = np.zeros((len(self._near), 5)), np.ones(len(self._near))
+        self._at = np.zeros((len(self._near), 5))
+        self._alive = np.ones(len(self._near))
 
     def go_on(self, length: Floats, alive: Floats) -> Floats:
         """Follow the paths by lengths (N,); return the weights (N,) that remain."""

@@ -189,9 +189,9 @@ class ClientData:
 
     def constants(self) -> Header:
         """Return the part of the header that changes only with the textures or the colours."""
-        textures, colours = self.textures, self.colours
+        textures = self.textures
+        colours = self.colours
         variant = sorted(variants(textures, unsteady=self.steps > 1))
-        names = ("name", "unit", "number", "cmap", "auto", "bar", "flat", "entries", "flip")
         return {
             "format": FORMAT,
             "name": textures.geometry.field.name,
@@ -201,25 +201,7 @@ class ClientData:
             "slices": self._slices(),
             "lengthUnit": self.field.length_unit,
             "speed": self._speed(),
-            "scalars": {
-                **{name: getattr(colours, name) for name in names},
-                "label": colours.label or colours.name or "",
-                "low": float(colours.scale.low),
-                "high": float(colours.scale.high),
-                "log": colours.scale.log_scale,
-                "ticks": [{"value": v, "text": text} for v, _, text in colours.scale.marks],
-                "beyond": [
-                    None if colour is None else plain_list(colour)
-                    for colour in (colours.scale.below, colours.scale.above, colours.scale.nan)
-                ],
-                "steps": 1 if colours.values is None or len(colours.values) == 1 else self.steps,
-                "choices": [
-                    {**choice, "steps": self.steps if choice["steps"] > 1 else 1}
-                    for choice in colours.choices
-                ],
-                "maps": list(CMAPS),
-                "diverging": list(filter(is_diverging, CMAPS)),
-            },
+            "scalars": self._scalars(),
             "colour": plain_list(colours.plain),
             "background": colours.background and plain_list(colours.background),
             "lighting": bool(colours.lighting),
@@ -235,6 +217,41 @@ class ClientData:
             "table": [*self._parameters, *_table()],
             **(formula_header(self.formula, self.textures.grid.shape) if self.formula else {}),
         }
+
+    def _scalars(self) -> Header:
+        """Return the part of the header about the scalar that is drawn, and the others."""
+        colours = self.colours
+        scale = colours.scale
+        names = ("name", "unit", "number", "cmap", "auto", "bar", "flat", "entries", "flip")
+        header: Header = {name: getattr(colours, name) for name in names}
+        beyond = []
+        for colour in (scale.below, scale.above, scale.nan):
+            if colour is None:
+                beyond.append(None)
+            else:
+                beyond.append(plain_list(colour))
+        choices = []
+        for choice in colours.choices:
+            steps = 1
+            if choice["steps"] > 1:
+                steps = self.steps
+            choices.append({**choice, "steps": steps})
+        steps = 1
+        if colours.values is not None and len(colours.values) > 1:
+            steps = self.steps
+        header.update(
+            label=colours.label or colours.name or "",
+            low=float(scale.low),
+            high=float(scale.high),
+            log=scale.log_scale,
+            ticks=[{"value": value, "text": text} for value, _, text in scale.marks],
+            beyond=beyond,
+            steps=steps,
+            choices=choices,
+            maps=list(CMAPS),
+            diverging=list(filter(is_diverging, CMAPS)),
+        )
+        return header
 
     def surface(self) -> Parts:
         """Return the arrays that are the same at all times, the smallest first."""
@@ -260,7 +277,8 @@ class ClientData:
         else:
             parts["position"] = np.ascontiguousarray(geometry.position, "<f4")
         if (image := self.textures.image) is not None:
-            parts["step"], parts["image"] = half(image.step), half(image.texels)
+            parts["step"] = half(image.step)
+            parts["image"] = half(image.texels)
         if self.bodies is not None:
             parts |= self.bodies.parts(geometry)
         land = colours.land is not None

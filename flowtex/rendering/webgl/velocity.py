@@ -9,7 +9,6 @@ makes texels of them as ``TextureSet`` does. A client that cannot trace gets the
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
@@ -17,6 +16,7 @@ from flowtex._util.array_types import AnyArray, Bools, Floats, Halves
 from flowtex._util.arrays import norm
 from flowtex._util.cache import ByteCache, WeakCache
 from flowtex.field.formula.formula import Formula, gradient_trees
+from flowtex.field.grids.poles import Poles
 from flowtex.field.interpolation import fill_blanked, nearest_known
 from flowtex.field.uncertainty import unknown_share
 from flowtex.rendering.tile_choice import CELL_PIXELS
@@ -156,29 +156,42 @@ def _size(textures: TextureSet) -> float:
     return float(np.median(_sizes(textures)))
 
 
+def _poles_header(poles: Poles, frame: Floats) -> list[Header]:
+    """Return the numbers by which positions near poles are found, in the axes of a frame."""
+    near = Charts(poles).near
+    headers = []
+    for pole in poles:
+        header: Header = {
+            "component": pole.component,
+            "line": pole.line,
+            "inward": pole.inward,
+            "near": near,
+            "plane": plain_list(pole.size * pole.plane @ frame.T),
+        }
+        headers.append(header)
+    return headers
+
+
 def trace_header(textures: TextureSet, depth: int) -> Header:
     """Return the numbers of tracing and of laying out the texels; ``depth`` is that of the root."""
     geometry = textures.grid
-    surface, store = geometry.field.surface, textures.store
-    poles, at_poles = surface.poles, dict[str, Any]()
-    timed, last = store.parameter == "time", float(store.lags[-1])
+    surface = geometry.field.surface
+    store = textures.store
+    timed = store.parameter == "time"
+    last = float(store.lags[-1])
     rest = (STILL_CELLS / last if store.streamlines else 0.0) if timed else RESTING_CELLS
-    rows, columns = geometry.rows, geometry.columns
-    valid, parts = geometry.field.valid, ["padded", "unit"]
+    rows = geometry.rows
+    columns = geometry.columns
+    valid = geometry.field.valid
+    parts = ["padded", "unit"]
     if _is_blanked(valid):
         parts += ["open", "nearest"]
     if not (geometry.planar or geometry.is_smooth):
         parts += ["normal"]
-    if poles is not None:
+    at_poles = {}
+    if surface.poles is not None:
         parts += ["rays"]
-        at_poles["poles"] = [
-            {
-                **{"component": pole.component, "line": pole.line, "inward": pole.inward},
-                "near": Charts(poles).near,
-                "plane": plain_list(pole.size * pole.plane @ geometry.frame.T),
-            }
-            for pole in poles
-        ]
+        at_poles["poles"] = _poles_header(surface.poles, geometry.frame)
     return {
         "parts": parts,
         # Of all nodes, and the one that the texel before the first would hold.

@@ -6,6 +6,7 @@ import math
 import re
 import struct
 from collections import Counter
+from collections.abc import Callable
 from functools import lru_cache
 from mmap import ACCESS_READ, mmap
 from os.path import realpath
@@ -232,6 +233,25 @@ def _check_latitude(latitude: float, label: str) -> None:
         )
 
 
+def _points_of_edition_1(
+    at: int, number: Callable[[int, int], int], check_latitudes: Callable[..., None], label: str
+) -> int:
+    """Return the number of points of a message of the first edition, as :func:`_points` does."""
+    flags = number(at + 15, 1)
+    grid = at + 8 + number(at + 8, 3)
+    if not flags & HAS_GRID:
+        return 0
+    values = grid + number(grid, 3)
+    columns = number(grid + 6, 2)
+    rows = number(grid + 8, 2)
+    if number(grid + 5, 1) in LATLON[1]:
+        check_latitudes(1_000, 3, grid + 10, grid + 17)
+    is_simple = not (flags & HAS_BITMAP or number(values + 3, 1) & NOT_SIMPLE)
+    if is_simple and MISSING not in (columns, rows):
+        _check_packed(number(values, 3) - 11, columns * rows, number(values + 10, 1), label)
+    return columns * rows
+
+
 def _points(data: Data, at: int, edition: int, end: int, label: str) -> int:
     """Return the number of points of the largest grid of a message.
 
@@ -246,20 +266,12 @@ def _points(data: Data, at: int, edition: int, end: int, label: str) -> int:
         for begin in places:
             _check_latitude((number(begin, count) & ~(1 << 8 * count - 1)) / unit, label)
 
-    place, most, count, bits = at + 16, 0, 0, 0
     if edition == 1:
-        flags = number(at + 15, 1)
-        grid = at + 8 + number(at + 8, 3)
-        if not flags & HAS_GRID:
-            return 0
-        values = grid + number(grid, 3)
-        most = number(grid + 6, 2) * number(grid + 8, 2)
-        if number(grid + 5, 1) in LATLON[1]:
-            check_latitudes(1_000, 3, grid + 10, grid + 17)
-        simple = not (flags & HAS_BITMAP or number(values + 3, 1) & NOT_SIMPLE)
-        if simple and MISSING not in (number(grid + 6, 2), number(grid + 8, 2)):
-            _check_packed(number(values, 3) - 11, most, number(values + 10, 1), label)
-        return most
+        return _points_of_edition_1(at, number, check_latitudes, label)
+    place = at + 16
+    most = 0
+    count = 0
+    bits = 0
     while place + 9 <= end:
         length = number(place, 4)
         if not 5 <= length <= end - place:

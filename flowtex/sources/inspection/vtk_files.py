@@ -165,12 +165,7 @@ class _Document:
             parent = ""
         self._path.append(tag)
         if tag == "VTKFile":
-            if attributes.get("byte_order") == "BigEndian":
-                self.order = "big"
-            else:
-                self.order = "little"
-            self.header = 8 if attributes.get("header_type") == "UInt64" else 4
-            self.compressed = attributes.get("compressor", "")
+            self._start_file(attributes)
         elif tag == "AppendedData":
             after = self._after_tag(self._parser.CurrentByteIndex)
             # An underscore stands before the data.
@@ -186,7 +181,8 @@ class _Document:
             self.whole = math.prod(_sides(attributes["WholeExtent"]))
             self.cells = _cells(attributes["WholeExtent"])
         elif tag == "Piece" and len(self._path) == 3:  # VTK reads only those of the grid
-            self._piece, self._pieces = attributes, self._pieces + 1
+            self._piece = attributes
+            self._pieces += 1
             self._check_piece()
             self.points += self._tuples("PointData") or 0
         elif tag == "Block":
@@ -198,6 +194,18 @@ class _Document:
         elif tag == "PDataArray" and parent in ("PPointData", "PPoints"):
             components = _whole(attributes.get("NumberOfComponents", "1"))
             self.parallel += 8 * components * self.whole
+
+    def _start_file(self, attributes: dict[str, str]) -> None:
+        """Take how the data of a file are stored."""
+        if attributes.get("byte_order") == "BigEndian":
+            self.order = "big"
+        else:
+            self.order = "little"
+        if attributes.get("header_type") == "UInt64":
+            self.header = 8
+        else:
+            self.header = 4
+        self.compressed = attributes.get("compressor", "")
 
     def _check_piece(self) -> None:
         """Raise a FieldError for a negative count, or nodes outside of the whole grid."""

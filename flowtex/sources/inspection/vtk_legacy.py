@@ -149,10 +149,12 @@ class _Legacy:
                 name = keyword + b" " + self._word()
                 self._array(name, byte, self._tuples, self._count(name))
             case b"texture_coordinates":
-                name, components = keyword + b" " + self._word(), self._count(keyword)
+                name = keyword + b" " + self._word()
+                components = self._count(keyword)
                 self._array(name, self._word(), self._tuples, components)
             case b"scalars":
-                name, kind = keyword + b" " + self._word(), self._word()
+                name = keyword + b" " + self._word()
+                kind = self._word()
                 components = 1 if self._is_next(b"lookup_table") else self._count(name)
                 self._word()
                 self._word()  # the table's name
@@ -163,7 +165,8 @@ class _Legacy:
                 name = keyword + b" " + self._word()
                 self._array(name, self._word(), self._tuples, COMPONENTS[keyword])
             case _:
-                count, components = self._count(keyword), 3 if keyword == b"points" else 1
+                count = self._count(keyword)
+                components = 3 if keyword == b"points" else 1
                 self._array(keyword, self._word(), count, components)
 
     def _cells(self, word: bytes) -> None:

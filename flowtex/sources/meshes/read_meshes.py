@@ -64,20 +64,20 @@ def read_meshes(mesh: Any, options: FieldOptions, *, name: str = "") -> SourceAr
     """
     record = Record()
     options.refuse(OF_EARTH, "datasets, but this is a mesh")
-    plane, periodic, sign_free = options.plane, options.periodic, bool(options.sign_free)
-    if (preference := options.preference or "point") not in ("point", "cell"):
-        raise FieldError(f'preference is {preference!r}; expected "point" or "cell"')
+    periodic = options.periodic
+    sign_free = bool(options.sign_free)
+    preference = _preference(options)
     cut = _cut_of(options)
     vectors, steps = series.with_velocity(mesh, options, record)
     first = next(steps)
     on_grid = parts.is_structured(first.grid) and cut is None
-    refused = {"plane": plane, "periodic": periodic, "sign_free": sign_free or None}
+    refused = {"plane": options.plane, "periodic": periodic, "sign_free": sign_free or None}
     if not on_grid and (given := [f"{k}={value!r}" for k, value in refused.items() if value]):
         raise FieldError(
             f"{', '.join(given)} applies to structured meshes, and this one is not; omit it, or "
             'cut a volume as in slice="x=0.5"'
         )
-    stored, chosen = choose(first.grid, vectors, plane, cut, record)
+    stored, chosen = choose(first.grid, vectors, options.plane, cut, record)
     read_as = MeshVelocity.of(stored, options.components, record)
     velocity = read_as.drawn
     is_plain = periodic is None and not sign_free
@@ -102,6 +102,14 @@ def read_meshes(mesh: Any, options: FieldOptions, *, name: str = "") -> SourceAr
     if chosen is not None:
         return GridArrays(**arrays, periodic=periodic, sign_free=sign_free)
     return TriangleArrays(**arrays)
+
+
+def _preference(options: FieldOptions) -> str:
+    """Return whether an array is that of points or of cells where both have its name."""
+    preference = options.preference or "point"
+    if preference not in ("point", "cell"):
+        raise FieldError(f'preference is {preference!r}; expected "point" or "cell"')
+    return preference
 
 
 def _masks(velocity: MeshArray, options: FieldOptions) -> Masks:

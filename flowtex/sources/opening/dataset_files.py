@@ -465,6 +465,14 @@ def open_datasets(paths: Sequence[Path]) -> Datasets:
     return Datasets(parts, [close for datasets in opened for close in datasets.closers])
 
 
+def _checked_zarr(path: Path) -> Any:
+    """Return the Zarr store in a folder, whose metadata are checked as they are read."""
+    import_extra("zarr", "xarray")
+    from flowtex._util.zarr_stores import checked_folder
+
+    return checked_folder(path)
+
+
 def open_files(path: Path) -> Datasets:
     """Open one file; GRIB has a dataset for each group of messages with common axes.
 
@@ -497,10 +505,8 @@ def open_files(path: Path) -> Datasets:
         options: dict[str, Any] = {"decode_timedelta": False}
         place: Any = path
         if path.is_dir() or suffix in ZARR:
-            import_extra("zarr", "xarray")
-            from flowtex._util.zarr_stores import checked_folder
-
-            place, options["engine"] = checked_folder(path), "zarr"
+            place = _checked_zarr(path)
+            options["engine"] = "zarr"
         try:
             ds = xarray.open_dataset(place, **options)
         except ValueError:  # times that no calendar has stay numbers
