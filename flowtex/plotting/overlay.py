@@ -21,6 +21,7 @@ from flowtex._util.array_types import Bools, Floats
 from flowtex._util.forks import renew_after_fork
 from flowtex._util.progress import pool
 from flowtex.field.earth.coast import Coast
+from flowtex.field.earth.projection import EARTH_RADIUS
 from flowtex.rendering.camera import read_camera
 from flowtex.rendering.map_overlay import (
     SPACING_PX,
@@ -44,8 +45,8 @@ from flowtex.scene.scene import Scene
 
 #: Distance of land behind the surface, as a share of the distance from the eye.
 LAND_FARTHER = 2e-4
-#: Pixels by which the globe is lower: coarse triangles sink by up to this many.
-GLOBE_LOWER_PX = 0.5
+#: Pixels by which the ground on a globe is lower: coarse triangles sink by up to this many.
+GROUND_LOWER_PX = 0.5
 #: Least distance at which the front of the globe is drawn, as a share of the farthest one.
 NEAREST = 1e-3
 GLOBE_CELLS = 180  #: Cells along a meridian of the globe below the surface.
@@ -294,23 +295,27 @@ class MapOverlay(Overlay):
             actor.prop.diffuse = const.DIFFUSE_LIGHT
 
     def _before_frame(self, renderer: pv.Renderer) -> None:
-        """Set the colour of places without data, and the globe below the flow."""
-        radius = self._radius
+        """Set the colour of places without data, and what lies below a flow on a globe."""
         for actor in self._missing:
             actor.prop.color = missing_colour(renderer.GetBackground())
-        if radius is not None and self._actor.GetVisibility():
-            self._include_globe(renderer.GetActiveCamera(), radius)
-            # The length of a pixel on the horizon, the farthest visible point of the globe.
-            view = self._surface.view
-            eye = self._surface.view.eye
-            pixel = view.pixel
-            if eye[3]:
-                horizon = np.sqrt(max(float(eye[:3] @ eye[:3]) - radius**2, 0.0))
-                pixel *= float(horizon / np.linalg.norm(eye[:3] - view.focus))
-            for part in self._parts:
-                if not part.nearer:
-                    part.actor.SetScale(1 - GLOBE_LOWER_PX * pixel / radius)
+        if self._radius is not None and self._actor.GetVisibility():
+            self._include_globe(renderer.GetActiveCamera(), self._radius)
+        if self._field.surface.on_globe:
+            self._lower_ground()
         super()._before_frame(renderer)
+
+    def _lower_ground(self) -> None:
+        """Lower the ground on a globe by as much as coarse triangles of the flow may sink."""
+        # The length of a pixel on the horizon, the farthest visible point of the globe.
+        view = self._surface.view
+        eye = view.eye
+        pixel = view.pixel
+        if eye[3]:
+            horizon = np.sqrt(max(float(eye[:3] @ eye[:3]) - EARTH_RADIUS**2, 0.0))
+            pixel *= float(horizon / np.linalg.norm(eye[:3] - view.focus))
+        for part in self._parts:
+            if part.nearer <= 0:
+                part.actor.SetScale(1 - GROUND_LOWER_PX * pixel / EARTH_RADIUS)
 
     def _include_globe(self, camera: vtkCamera, radius: float) -> None:
         """Extend the clipping range to the globe, which has no bounds in VTK."""
