@@ -315,6 +315,8 @@ def values_near(field: FieldData, x: float, y: float, z: Any, time: Any) -> Poin
             return None
         return _values_at(field, index, time)
     part = finest.near(_in_space(field, at))
+    if not len(part.field.surface.drawn):  # nothing around the place has data
+        return None
     index = _located(part.field, at, tolerance)
     if index is None:
         return None
