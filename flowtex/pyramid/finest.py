@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
 from functools import cached_property
 from typing import Any
 
@@ -16,8 +15,6 @@ from flowtex.field.earth.projection import Projection
 from flowtex.field.finer import FinePart, Finest, finest_of
 from flowtex.field.grids.grid_surface import GridSurface
 from flowtex.field.locate import EARTH, Locator
-from flowtex.field.scalars import Scalars
-from flowtex.field.steps import LazySteps, Steps
 from flowtex.pyramid.source import RegionSource
 from flowtex.textures.tiles.grid_levels import level_lines
 from flowtex.textures.tiles.grid_pyramid import GridPyramid
@@ -174,28 +171,9 @@ class FinestOfRegions:
 
     def _part(self, rows: Indices, columns: Indices) -> FlowField:
         """Return some rows and columns of the field, whose steps are read late."""
-        source = self._source
-        kept = slice(int(rows[0]), int(rows[-1]) + 1), slice(int(columns[0]), int(columns[-1]) + 1)
-        valid = source.nodes(0, *kept).valid
-
-        def velocity(step: int) -> Floats:
-            return np.asarray(source.nodes(step, *kept, valid).velocity)
-
-        def scalar(name: str) -> Callable[[int], Floats]:
-            return lambda step: source.nodes(step, *kept, valid).scalars[name]
-
-        count = len(source.field.times)
-        scalars: Scalars[Steps] = Scalars()
-        for name in source.scalars:
-            scalars[name] = LazySteps(count, scalar(name))
-        return replace(
-            source.field,
-            points=source.points(*kept),
-            velocity=LazySteps(count, velocity),
-            valid=valid,
-            periodic=(False, False),
-            scalars=scalars,
-        )
+        kept_rows = slice(int(rows[0]), int(rows[-1]) + 1)
+        kept_columns = slice(int(columns[0]), int(columns[-1]) + 1)
+        return self._source.part(kept_rows, kept_columns, (False, False))
 
 
 def coarse_lines(field: FlowField) -> tuple[Floats, Floats]:

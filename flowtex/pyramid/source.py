@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import math
 import warnings
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import Any, TypeAlias
 
@@ -18,8 +20,10 @@ from flowtex.field import FlowField
 from flowtex.field.field_arrays import SourceArrays
 from flowtex.field.folds import ROWS_OF_FOLDS
 from flowtex.field.options import FieldOptions
-from flowtex.field.steps import LazySteps, Nodes, typical_steps
+from flowtex.field.scalars import Scalars
+from flowtex.field.steps import LazySteps, Nodes, Steps, typical_steps
 from flowtex.field.uncertainty import with_uncertainty
+from flowtex.field.units import speed_unit
 from flowtex.pyramid.places import (
     PyramidError,
     ReadFault,
@@ -154,6 +158,57 @@ class RegionSource:
     def nodes(self, step: int, rows: Lines, columns: Lines, valid: Bools | None = None) -> Nodes:
         """Read the data of some nodes."""
         return self.regions.nodes(step, rows, columns, valid)
+
+    def with_regions(self, regions: Regions) -> RegionSource:
+        """Return the same flow at other nodes."""
+        source = RegionSource(regions)
+        source.field = self.field
+        return source
+
+    def late_nodes(self, rows: Lines, columns: Lines) -> Nodes:
+        """Return the data of some nodes at all steps; those of a series are read when needed."""
+        first = self.nodes(0, rows, columns)
+        count = len(self.field.times)
+        if count == 1:
+            scalars = {name: values[None] for name, values in first.scalars.items()}
+            return first._replace(velocity=first.velocity[None], scalars=scalars)
+
+        def velocity(step: int) -> Floats:
+            return np.asarray(self.nodes(step, rows, columns, first.valid).velocity)
+
+        def scalar(name: str) -> Callable[[int], Floats]:
+            return lambda step: self.regions.scalar(name, step, rows, columns)
+
+        late: dict[str, Steps] = {"speed": LazySteps(count, partial(self._speed, rows, columns))}
+        for name in self.regions.scalars:
+            late[name] = LazySteps(count, scalar(name))
+        return first._replace(velocity=LazySteps(count, velocity), scalars=late)
+
+    def _speed(self, rows: Lines, columns: Lines, step: int) -> Floats:
+        """Return the speed of some nodes, NaN where there are no data."""
+        u, v = self.regions.components(step, rows, columns)
+        speed = np.hypot(u, v)
+        if "speed" in self.scalars:  # on a map, in the unit of the data
+            return speed
+        return speed * self.regions.factor * self.field.speed_scale
+
+    def part(self, rows: Lines, columns: Lines, periodic: tuple[bool, bool]) -> FlowField:
+        """Return some rows and columns as a field, whose steps are read when needed."""
+        nodes = self.late_nodes(rows, columns)
+        field = self.field
+        units = dict(field.units)
+        if "speed" in nodes.scalars:
+            own_unit = field.velocity_unit or speed_unit(field.length_unit, field.time_unit)
+            units.setdefault("speed", own_unit)
+        return replace(
+            field,
+            points=nodes.points,
+            velocity=nodes.velocity,
+            valid=nodes.valid,
+            periodic=periodic,
+            scalars=Scalars(nodes.scalars),
+            units=units,
+        )
 
     def chosen_lines(self, lines: str) -> str:
         """Return the kind of lines to draw, judged at some of the nodes."""

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from functools import cached_property, partial
 from pathlib import Path
@@ -11,18 +10,17 @@ from typing import Any
 import numpy as np
 
 from flowtex._util.array_types import AnyArray, Bools, Floats, Indices
-from flowtex.errors import FieldError, notify
+from flowtex.errors import FieldError
 from flowtex.field import FlowField
 from flowtex.field.field_data import FINEST, OPENED, WHOLE_SHAPE
 from flowtex.field.options import FieldOptions
 from flowtex.field.steps import Nodes
 from flowtex.field.uncertainty import spread_name
-from flowtex.pyramid.finest import FinestOfLevels, FinestOfRegions
+from flowtex.pyramid.finest import FinestOfLevels
 from flowtex.pyramid.layout import VELOCITY_BITS, About
 from flowtex.pyramid.levels import Levels
+from flowtex.pyramid.others import open_other
 from flowtex.pyramid.places import PyramidError, is_store, place_text
-from flowtex.pyramid.source import WHOLE_NODES, RegionSource, datasets_at, source_of
-from flowtex.sources.read_fields import field_of_dataset
 from flowtex.textures.texture_set import TextureSet
 from flowtex.textures.tiles.grid_levels import averaged
 from flowtex.textures.tiles.grid_pyramid import GridPyramid
@@ -42,8 +40,7 @@ def open_store(store: str | Path, *, uncertainty: Any = None, **options: Any) ->
     store
         A local folder, or a URL: ``s3://bucket/path`` and other object storage, or ``https://``.
         Endpoint and credentials come from the environment. It may also be written by other
-        programs: a Zarr dataset, or a group of several levels, as of ndpyramid and topozarr. Of one
-        with more than two million nodes a coarser level, or every n-th node, is drawn.
+        programs: a Zarr dataset, or a group of several levels, as of ndpyramid and topozarr.
     uncertainty
         As for :meth:`flowtex.FlowField.from_xarray`. A store that flowtex built uses the
         uncertainty with which it was built, and refuses another one.
@@ -65,7 +62,7 @@ def open_store(store: str | Path, *, uncertainty: Any = None, **options: Any) ->
     Warns
     -----
     Notice
-        When not all nodes of the store of another program are drawn.
+        When a large store of another program has no coarse level.
 
     Examples
     --------
@@ -77,7 +74,7 @@ def open_store(store: str | Path, *, uncertainty: Any = None, **options: Any) ->
     """
     if not is_store(store):
         given = {**options, "uncertainty": uncertainty}
-        return _of_others(place_text(store), FieldOptions.of_dataset(given))
+        return open_other(place_text(store), FieldOptions.of_dataset(given))
     if options:
         raise FieldError(f"{', '.join(options)} applies to the source of a pyramid; omit it")
     levels = Levels(store)
@@ -206,45 +203,3 @@ class StoredPyramid(GridPyramid):
 def _agree(values: AnyArray, reference: AnyArray) -> bool:
     size = np.abs(np.nan_to_num(reference)).max(initial=0.0)
     return bool(np.allclose(values, reference, 2.0**-VELOCITY_BITS, 1e-6 * size, equal_nan=True))
-
-
-def _of_others(place: str, options: FieldOptions) -> FlowField:
-    """Open a store of other programs; a PyramidError names one whose content is invalid."""
-    try:
-        return _field_of_others(place, options)
-    except (FieldError, ImportError):
-        raise
-    except (ValueError, LookupError, TypeError, AttributeError, ArithmeticError) as error:
-        # Libraries fail so where metadata or attributes are absurd.
-        raise PyramidError(
-            f"{place} cannot be read: its content is invalid ({type(error).__name__}: {error}); "
-            "check its metadata, or open it with xarray and pass the dataset"
-        ) from error
-
-
-def _field_of_others(place: str, options: FieldOptions) -> FlowField:
-    """Open a store of others: its finest level that is not too large, or every n-th node."""
-    finest, *coarser = datasets_at(place, options)
-    name = Path(place).stem
-    source = source_of(finest, name=name, **options.given)
-    if not isinstance(source, RegionSource):
-        return source.field
-    axes = source.regions.values.components[0].variable.dims[-2:]
-
-    def nodes(dataset: Any) -> int:
-        return math.prod(dataset.sizes[axis] for axis in axes)
-
-    for drawn in (finest, *coarser):  # the last one if all are too large
-        if nodes(drawn) <= WHOLE_NODES:
-            break
-    every = math.ceil(math.sqrt(nodes(drawn) / WHOLE_NODES))
-    drawn = drawn.isel({axis: slice(None, None, every) for axis in axes})
-    if nodes(drawn) < nodes(finest):
-        notify(
-            f"{place} is drawn with {nodes(drawn):,} of its {nodes(finest):,} nodes; "
-            f"`flowtex pyramid {place} -o flow.zarr` builds a store of all of them"
-        )
-    field = field_of_dataset(drawn, options, name=name)
-    if nodes(drawn) < nodes(finest):
-        field.__dict__[FINEST] = FinestOfRegions(source, field)
-    return field

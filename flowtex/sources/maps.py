@@ -153,6 +153,17 @@ class NodeLines:
         """Number of nodes (J, I)."""
         return len(self.rows), len(self.share)
 
+    def some(self, rows: Lines, columns: Lines) -> NodeLines:
+        """Return some of the lines."""
+        return replace(
+            self,
+            a=self.a[columns],
+            b=self.b[rows],
+            rows=self.rows[rows],
+            columns=self.columns[:, columns],
+            share=self.share[columns],
+        )
+
     def points(self, rows: Lines, columns: Lines) -> Floats:
         """Return positions (J, I, 3) of some rows and columns."""
         a, b = np.broadcast_arrays(self.a[columns], self.b[rows][:, None])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pickle
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -16,6 +17,8 @@ from flowtex.cli import main
 from flowtex.errors import FieldError, Notice
 from flowtex.pyramid import is_store, open_store
 from flowtex.pyramid.source import has_parts
+from flowtex.sources.datasets.values import Regions
+from flowtex.textures.tiles.grid_levels import level_lines
 from flowtex.textures.tiles.shared import shared_pyramid
 
 zarr = pytest.importorskip("zarr")
@@ -33,7 +36,7 @@ TOLD: dict[str, Any] = {
 def _small(small_tiles: None) -> Iterator[None]:
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("flowtex.textures.tiles.grid_levels.ROOT_NODES", 500)
-        for module in ("stored", "source"):
+        for module in ("others", "source"):
             patch.setattr(f"flowtex.pyramid.{module}.WHOLE_NODES", 2000)
         yield
 
@@ -78,15 +81,46 @@ def stores(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
 def test_the_finest_level_of_moderate_size_is_opened(stores: dict[str, Path], name: str) -> None:
     store = stores[name]
     assert has_parts(store) and not is_store(store)
-    with pytest.warns(Notice, match=r"drawn with 1,536 of its 6,144 nodes; .* -o flow.zarr"):
-        field = open_store(store)
-    assert field.shape == (ROWS // 2, COLUMNS // 2)
+    field = open_store(store)
+    # Every second line of the finest level, and the last one.
+    assert field.shape == (ROWS // 2 + 1, COLUMNS // 2 + 1)
+    assert field.short_size == f"{COLUMNS} × {ROWS} nodes"
+    whole = FlowField.from_xarray(dataset())
+    lines = [level_lines(count, 1) for count in (ROWS, COLUMNS)]
+    np.testing.assert_allclose(field.points, whole.points[np.ix_(*lines)])
+    check_linear(field)
+
+
+def check_linear(field: FlowField) -> None:
+    """Check the velocity of a field, also at its edges, which lie outside of means of cells."""
     x, y, _ = np.moveaxis(field.points, -1, 0)
-    assert np.allclose(np.asarray(field.velocity[0])[..., 0], 1 + 0.2 * x, atol=1e-6)
-    assert np.allclose(np.asarray(field.velocity[0])[..., 1], 0.3 * y - 0.1 * x, atol=1e-6)
+    velocity = np.asarray(field.velocity[0])
+    np.testing.assert_allclose(velocity[..., 0], 1 + 0.2 * x, atol=1e-6)
+    np.testing.assert_allclose(velocity[..., 1], 0.3 * y - 0.1 * x, atol=1e-6)
 
 
-@pytest.mark.filterwarnings("ignore:.* is drawn with")
+@pytest.mark.parametrize("name", TOLD)
+def test_each_level_is_read_from_the_coarsest_that_suffices(
+    stores: dict[str, Path], name: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    read: list[tuple[int, int]] = []
+    components = Regions.components
+
+    def counted(self: Regions, step: int, rows: Any, columns: Any) -> Any:
+        found = components(self, step, rows, columns)
+        read.append(found[0].shape)
+        return found
+
+    field = open_store(stores[name])
+    pyramid = shared_pyramid(field, "arclength", "streamlines")
+    assert pyramid.nodes == (ROWS, COLUMNS) and pyramid.depth == 2
+    monkeypatch.setattr(Regions, "components", counted)
+    for level in range(2):  # coarser ones are means of these
+        check_linear(pyramid.at_level(level))
+    # The finest level alone is read; those above it are in memory.
+    assert set(read) == {(ROWS, COLUMNS)}
+
+
 def test_pictures_and_the_shell(
     opengl: Any, stores: dict[str, Path], tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -99,7 +133,7 @@ def test_pictures_and_the_shell(
         assert main(["info", url]) == 0
     assert np.array_equal(pictures[0], pictures[1]) and pictures[0].std() > 10
     said = capsys.readouterr().out
-    assert f"{COLUMNS // 2} × {ROWS // 2} nodes" in said and url in said
+    assert f"{COLUMNS} × {ROWS} nodes" in said and url in said
     with pytest.raises(FieldError) as told:
         flowtex.export(store, tmp_path / "b.html", store="./flow.zarr")
     assert "`flowtex pyramid FILE -o flow.zarr` and export that" in str(told.value)
@@ -150,19 +184,24 @@ def test_levels_on_a_server_without_a_list(tmp_path: Path) -> None:
         one = dataset().coarsen(x=factor, y=factor).mean()
         one.to_zarr(place, group=str(n), consolidated=False, zarr_format=3)
     zarr.open_group(place, mode="r+").attrs["multiscales"] = TOLD["ndpyramid"]
-    with range_server(tmp_path) as server, pytest.warns(Notice, match="drawn with 1,536 of its"):
+    with range_server(tmp_path) as server:
         field = open_store(f"{server.address}flow.zarr")
-    assert field.shape == (ROWS // 2, COLUMNS // 2)
+        check_linear(field)
+        check_linear(shared_pyramid(field, "arclength", "streamlines").at_level(0))
 
 
-def test_of_one_large_level_every_nth_node_is_drawn(tmp_path: Path) -> None:
+@pytest.mark.parametrize("projection", ["globe", "platecarree", "mercator"])
+def test_one_large_level_has_levels_of_every_second_line(tmp_path: Path, projection: str) -> None:
     dataset(earth=True).to_zarr(tmp_path / "a.zarr", consolidated=False, zarr_format=3)
-    with pytest.warns(Notice, match="drawn with 1,536 of its 6,144 nodes"):
-        field = open_store(tmp_path / "a.zarr", globe=True)
-    assert field.projection is not None and field.projection.is_globe
-    whole = FlowField.from_xarray(dataset(earth=True), globe=True)
-    assert np.allclose(field.points, whole.points[::2, ::2])
-    assert np.allclose(field.velocity[0], whole.velocity[0][::2, ::2], atol=1e-6)
+    with pytest.warns(Notice, match=r"no level of at most 2,000 nodes.*-o flow.zarr"):
+        field = open_store(tmp_path / "a.zarr", projection=projection)
+    whole = FlowField.from_xarray(dataset(earth=True), projection=projection)
+    pyramid = shared_pyramid(field, "arclength", "streamlines")
+    for level in range(2):
+        part = pyramid.at_level(level)
+        lines = np.ix_(*[level_lines(count, level) for count in whole.shape])
+        np.testing.assert_allclose(part.points, whole.points[lines])
+        np.testing.assert_allclose(part.velocity[0], whole.velocity[0][lines], atol=1e-6)
 
 
 def test_what_is_no_velocity_is_told(tmp_path: Path) -> None:
@@ -172,3 +211,47 @@ def test_what_is_no_velocity_is_told(tmp_path: Path) -> None:
     data.to_zarr(tmp_path / "a.zarr", consolidated=False, zarr_format=3)
     with pytest.raises(FieldError, match="no velocity; expected two variables such as u and v"):
         open_store(tmp_path / "a.zarr")
+
+
+def series() -> Any:
+    """Return a turning flow on the Earth with land, and nodes without data at one time."""
+    calm = dataset(earth=True)
+    lon, lat = np.meshgrid(calm.lon, calm.lat)
+    steps = np.arange(3.0)[:, None, None]
+    u = np.cos(lon + steps) + 0.3 * lat
+    v = np.sin(lat - steps) + 0 * lon
+    land = (lon - 2) ** 2 + (lat - 1.5) ** 2 < 0.3
+    u[:, land] = v[:, land] = np.nan
+    u[1, 50:, :20] = v[1, 50:, :20] = np.nan
+    names = ("time", "lat", "lon")
+    data = {"uo": (names, u, {"units": "m/s"}), "vo": (names, v, {"units": "m/s"})}
+    data["salt"] = (names, 35 + u, {"units": "1"})
+    times = np.array(["2020-01-01", "2020-01-02", "2020-01-03"], dtype="datetime64[ns]")
+    return xr.Dataset(data, {"time": times, "lat": calm.lat, "lon": calm.lon})
+
+
+@pytest.mark.parametrize("projection", ["globe", "platecarree"])
+def test_values_of_a_series_are_those_of_the_dataset(tmp_path: Path, projection: str) -> None:
+    finest = series()
+    for n, factor in enumerate((1, 2, 4)):
+        one = finest.coarsen(lat=factor, lon=factor).mean()
+        one.to_zarr(tmp_path / "a.zarr", group=str(n), consolidated=False, zarr_format=3)
+    zarr.open_group(tmp_path / "a.zarr", mode="r+").attrs["multiscales"] = TOLD["convention"]
+    field = open_store(tmp_path / "a.zarr", projection=projection)
+    with pytest.warns(Notice, match="lack data at some times"):
+        known = FlowField.from_xarray(finest, projection=projection)
+    rng = np.random.default_rng(3)
+    for lon, lat, time in rng.uniform((0.1, 0.1, 0), (4.8, 3.2, 2 * 86_400), (60, 3)):
+        expected = known.at(lon, lat, time=time)
+        found = field.at(lon, lat, time=time)
+        if expected is None or found is None:  # on land
+            assert expected is found
+            continue
+        for name in ("eastward", "northward", "speed"):
+            values = getattr(found, name), getattr(expected, name)
+            np.testing.assert_allclose(*values, rtol=1e-5, atol=1e-6)
+        np.testing.assert_allclose(found.scalars["salt"], expected.scalars["salt"], rtol=1e-5)
+    copy = pickle.loads(pickle.dumps(field))
+    np.testing.assert_array_equal(copy.velocity[1], field.velocity[1])
+    assert copy.at(4.0, 1.0) is not None and copy.at(2.0, 1.5) is None
+    assert flowtex.render(field, size=(120, 90), samples=5, time=86_400.0, zoom=4).std() > 5

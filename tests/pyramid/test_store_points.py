@@ -31,7 +31,7 @@ ROUNDING = 2.0**-11
 def _small_roots(small_tiles: None) -> Iterator[None]:
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("flowtex.textures.tiles.grid_levels.ROOT_NODES", 300)
-        for module in ("stored", "source"):
+        for module in ("others", "source"):
             patch.setattr(f"flowtex.pyramid.{module}.WHOLE_NODES", 2000)
         yield
 
