@@ -132,7 +132,8 @@ def _field_of_levels(
             f"all of its nodes; `flowtex pyramid {place} -o flow.zarr` builds a store with levels"
         )
     coarse = finest.with_regions(_regions_at(stored, level))
-    field = coarse.part(*map(np.arange, coarse.shape), periodic=finest.field.periodic)
+    rows, columns = coarse.shape
+    field = coarse.part(np.arange(rows), np.arange(columns), finest.field.periodic)
 
     def pyramid(field: FlowField, parameter: str, lines: str) -> OtherPyramid:
         return OtherPyramid(finer, field, parameter, lines)

@@ -224,7 +224,7 @@ class ClientData:
         scale = colours.scale
         names = ("name", "unit", "number", "cmap", "auto", "bar", "flat", "entries", "flip")
         header: Header = {name: getattr(colours, name) for name in names}
-        beyond = []
+        beyond: list[list[float] | None] = []
         for colour in (scale.below, scale.above, scale.nan):
             if colour is None:
                 beyond.append(None)
