@@ -64,7 +64,8 @@ from flowtex.sources.datasets.values import (
     steps_to_examine,
 )
 from flowtex.sources.datasets.vertical import is_vertical
-from flowtex.sources.models.conventions import find_mesh, join_faces
+from flowtex.sources.models.conventions import find_mesh
+from flowtex.sources.models.globe_faces import join_faces
 from flowtex.sources.models.model_mesh import POINTS, Mesh
 from flowtex.sources.notices import Record
 from flowtex.sources.opening.dataset_files import Datasets, as_datasets
@@ -383,7 +384,7 @@ def read_flow(data: Any, options: FieldOptions, record: Record) -> Flow:
     choice = Choice.of(options)
     datasets = as_datasets(data, record, choice)
     choice.used |= datasets.used
-    datasets, pair = _chosen(datasets, choice, options)
+    datasets, pair = _chosen(datasets, choice, options, record)
     _record_pair(pair, datasets, options, record)
     unit, factors = component_units(pair, record)
     one = pair.u
@@ -442,14 +443,17 @@ def _record_pair(pair: Pair, datasets: Datasets, options: FieldOptions, record: 
     record("select", text, Remedy("vectors", others[0]), notable=True)
 
 
-def _chosen(datasets: Datasets, choice: Choice, options: FieldOptions) -> tuple[Datasets, Pair]:
+def _chosen(
+    datasets: Datasets, choice: Choice, options: FieldOptions, record: Record
+) -> tuple[Datasets, Pair]:
     """Return the velocity, and the datasets in the form that its kind requires."""
     first, second = select.two_names(options.vectors)
     direction = options.direction
     if not isinstance(direction, str):
         direction = None
     pair = select.choose_pair(datasets, first, second, direction)
-    joined = join_faces(datasets, pair, {*choice.sel, *choice.isel}, options.components)
+    chosen = {*choice.sel, *choice.isel}
+    joined = join_faces(datasets, pair, chosen, options.components, record)
     if joined is not None:
         datasets = Datasets(joined, datasets.closers)
     pair = select.with_directions(pair, options.components)

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Container, Iterator, Mapping, Sequence
-from importlib.util import find_spec
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -17,7 +16,7 @@ from flowtex.errors import FieldError
 from flowtex.sources.datasets.axes import FACES, LEVEL, NODES, TIME, axis_kind
 from flowtex.sources.datasets.coordinates import ACROSS, LONGITUDE, SWAPS
 from flowtex.sources.datasets.levels import LEVELS
-from flowtex.sources.datasets.select import MOVING, Pair, find_pairs
+from flowtex.sources.datasets.select import MOVING, find_pairs
 from flowtex.sources.datasets.vertical import is_vertical
 from flowtex.sources.models.healpix import with_centres
 from flowtex.sources.models.model_mesh import POINTS, Mesh
@@ -307,61 +306,3 @@ def _is_surface(x: xr.DataArray, y: xr.DataArray) -> bool:
         return len(Mesh(POINTS, x, y).faces) > 0
     except FieldError:
         return False
-
-
-def join_faces(
-    datasets: Sequence[xr.Dataset], pair: Pair, chosen: Container[str], wanted: str | None
-) -> list[xr.Dataset] | None:
-    """Return datasets with the faces of a globe along ``NODES``; ``None`` for other datasets.
-
-    ``chosen`` are axes along which one entry is selected, and ``wanted`` the directions of the
-    components, if they are given. Coordinates along a part of the axes only count the nodes, and
-    are dropped. Raises a FieldError for components along rows and columns.
-
-    Raises
-    ------
-    FieldError
-        When the components lie along rows and columns, which differ from face to face.
-    """
-    u = pair.u
-    sizes = {str(d): n for d, n in u.sizes.items() if FACES_OF_GLOBE.match(str(d))}
-    face = next((d for d, n in sizes.items() if 1 < n <= MOST_FACES and d not in chosen), "")
-    if not face:
-        return None
-    if (wanted or pair.along) != "earth":
-        raise FieldError(_along_faces(pair, face, sizes[face]))
-    for lon, _ in position_pairs([ds[name] for ds in datasets for name in ds.variables]):
-        dims = {str(d) for d in lon.dims}
-        if lon.ndim == 3 and face in dims:
-            return [_one_dimension(ds, dims) if dims <= set(ds.dims) else ds for ds in datasets]
-    return None
-
-
-def _along_faces(pair: Pair, face: str, count: int) -> str:
-    """Return the text of an error for components along the rows and columns of faces."""
-    u = str(pair.u.name)
-    v = str(pair.v.name)
-    text = (
-        f"{u} and {v} lie along the rows and columns of each of {count} faces ({face}), as no "
-        "standard name says eastward and northward. "
-    )
-    if pair.u.dims != pair.v.dims:
-        text += f"Bring {u} and {v} to the middle of cells, as with xgcm, and turn them there: "
-    else:
-        text += "Turn them by the cosine and sine of the angle of the rows, such as CS and SN: "
-    return (
-        f"{text}east = {u} * CS - {v} * SN, north = {u} * SN + {v} * CS, and name these, as in "
-        f"u='east', v='north', components='earth'. Or select one face: isel={{{face!r}: 0}}"
-    )
-
-
-def _one_dimension(ds: xr.Dataset, face: set[str]) -> xr.Dataset:
-    parts = []
-    for name, a in ds.variables.items():
-        if face & {*a.dims} and face - {*a.dims}:
-            parts.append(name)
-    ds = ds.drop_vars(parts)
-    if "source" in ds.encoding and not ds.chunks and find_spec("dask") is not None:
-        # Otherwise all of a file is read.
-        ds = ds.chunk({d: 1 if d not in face else -1 for d in ds.dims})
-    return ds.stack({NODES: sorted(face)}, create_index=False)
