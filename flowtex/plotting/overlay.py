@@ -43,10 +43,11 @@ from flowtex.rendering.webgl.marks import RIM_COLOR, RIM_OPACITY, strokes
 from flowtex.scene.options import coast_of, is_drawn
 from flowtex.scene.scene import Scene
 
-#: Distance of land behind the surface, as a share of the distance from the eye.
+#: Distance of land behind a flat surface, as a share of the distance from the eye.
 LAND_FARTHER = 2e-4
-#: Pixels by which the ground on a globe is lower: coarse triangles sink by up to this many.
-GROUND_LOWER_PX = 0.5
+#: Pixels by which land on a globe is lower: coarse triangles sink by up to this many.
+LAND_LOWER_PX = 0.5
+GLOBE_LOWER_PX = 1.0  #: Pixels by which the globe is lower, which is below land as well.
 #: Least distance at which the front of the globe is drawn, as a share of the farthest one.
 NEAREST = 1e-3
 GLOBE_CELLS = 180  #: Cells along a meridian of the globe below the surface.
@@ -61,6 +62,7 @@ class Part(NamedTuple):
     nearer: float
     width: float = 0.0
     forms: tuple[tuple[float, pv.PolyData], ...] = ()
+    lower: float = 0.0  #: Pixels by which it lies closer to the centre of the globe.
 
 
 #: How much nearer than the surface lines are, as a share of the distance: more than an inclined
@@ -119,7 +121,8 @@ class Overlay:
         variant: frozenset[str] = frozenset()
         if above is not None:
             variant = frozenset({"FLOWTEX_OPAQUE"})
-        actor = self._add(forms[-1][1], nearer, "line_", variant, width, forms)
+        mesh = forms[-1][1]
+        actor = self._add(mesh, nearer, "line_", variant, width=width, forms=forms)
         for name in (OTHER, SIDE):
             actor.mapper.MapDataArrayToVertexAttribute(name, name, POINTS, -1)
         if above is None:
@@ -136,13 +139,13 @@ class Overlay:
         nearer: float,
         prefix: str = "map_",
         variant: frozenset[str] = frozenset(),
-        *shape: Any,
+        **options: Any,
     ) -> pv.Actor:
-        """Show a mesh that moves with the flow, and return its actor."""
+        """Show a mesh that moves with the flow, and return its actor; options are of a part."""
         actor = plain_actor(mesh)
         actor.SetUserMatrix(self._actor.GetMatrix())
         insert_text(actor, "flowtex overlay", prefix, variant)
-        self._parts.append(Part(actor, nearer, *shape))
+        self._parts.append(Part(actor, nearer, **options))
         if (renderer := self._renderer()) is not None:
             renderer.AddActor(actor)
         return actor
@@ -173,17 +176,30 @@ class Overlay:
         # Lines of a large picture are wider, not by as much as it is larger.
         width = np.clip(np.sqrt(whole_height / density / USUAL_HEIGHT_PX), *WIDTH_RANGE)
         pixel = float(width) * density * height / full_height
+        pixel_share = self._pixel_share()
         finest = SPACING_PX * self._surface.view.pixel * self._surface.view.density
         for part in self._parts:
             part.actor.SetVisibility(is_visible)
             uniforms = part.actor.GetShaderProperty().GetVertexCustomUniforms()
             uniforms.SetUniformf("flowtexNearer", part.nearer * nearer)
+            uniforms.SetUniformf("flowtexLower", part.lower * pixel_share)
             if part.forms:
                 mesh = next(mesh for spacing, mesh in part.forms if spacing <= finest)
                 if mesh is not part.actor.mapper.dataset:
                     part.actor.mapper.dataset = mesh
                 uniforms.SetUniformf("flowtexRadius", 0.5 * part.width * pixel)
                 uniforms.SetUniform4f("flowtexViewport", viewport)
+
+    def _pixel_share(self) -> float:
+        """Return the length of a pixel in radii of the Earth, in perspective at a distance of 1."""
+        view = self._surface.view
+        eye = view.eye
+        if not eye[3]:
+            return view.pixel / EARTH_RADIUS
+        matrix = pv.array_from_vtkmatrix(self._actor.GetMatrix())
+        scale = np.linalg.norm(matrix[:3, 0])
+        distance = np.linalg.norm(eye[:3] - view.focus)
+        return float(view.pixel / (distance * scale * EARTH_RADIUS))
 
 
 def piece_mesh(start: Floats, end: Floats) -> pv.PolyData:
@@ -259,21 +275,23 @@ class MapOverlay(Overlay):
         coast = coast_of(self._scene.appearance)
         ground = ground_cells(self._field, tiled=tiled, coast=coast)
         if ground.land.any():
-            meshes.append((self._mesh_of(ground.land), -LAND_FARTHER, color))
+            meshes.append((self._mesh_of(ground.land), LAND_LOWER_PX, color))
         if ground.missing.any():
-            meshes.append((self._mesh_of(ground.missing), -LAND_FARTHER, None))
+            meshes.append((self._mesh_of(ground.missing), LAND_LOWER_PX, None))
         self._radius = globe_radius(self._field)
         if self._radius is not None:
             around = 2 * GLOBE_CELLS
             along = GLOBE_CELLS
             globe = pv.Sphere(radius=self._radius, theta_resolution=around, phi_resolution=along)
-            meshes.append((globe, 0.0, None))
-        for mesh, nearer, own_color in meshes:
+            meshes.append((globe, GLOBE_LOWER_PX, None))
+        for mesh, lower, own_color in meshes:
             if self._field.surface.on_globe:
                 mesh.point_data.active_normals = mesh.points / np.linalg.norm(
                     mesh.points, axis=1, keepdims=True
                 )
-            actor = self._add(mesh, nearer)
+                actor = self._add(mesh, 0.0, lower=lower)
+            else:
+                actor = self._add(mesh, -LAND_FARTHER)
             self._colour_ground(actor, own_color)
 
     def _mesh_of(self, cells: Bools) -> pv.PolyData:
@@ -295,27 +313,12 @@ class MapOverlay(Overlay):
             actor.prop.diffuse = const.DIFFUSE_LIGHT
 
     def _before_frame(self, renderer: pv.Renderer) -> None:
-        """Set the colour of places without data, and what lies below a flow on a globe."""
+        """Set the colour of places without data, and include the globe in what the camera sees."""
         for actor in self._missing:
             actor.prop.color = missing_colour(renderer.GetBackground())
         if self._radius is not None and self._actor.GetVisibility():
             self._include_globe(renderer.GetActiveCamera(), self._radius)
-        if self._field.surface.on_globe:
-            self._lower_ground()
         super()._before_frame(renderer)
-
-    def _lower_ground(self) -> None:
-        """Lower the ground on a globe by as much as coarse triangles of the flow may sink."""
-        # The length of a pixel on the horizon, the farthest visible point of the globe.
-        view = self._surface.view
-        eye = view.eye
-        pixel = view.pixel
-        if eye[3]:
-            horizon = np.sqrt(max(float(eye[:3] @ eye[:3]) - EARTH_RADIUS**2, 0.0))
-            pixel *= float(horizon / np.linalg.norm(eye[:3] - view.focus))
-        for part in self._parts:
-            if part.nearer <= 0:
-                part.actor.SetScale(1 - GROUND_LOWER_PX * pixel / EARTH_RADIUS)
 
     def _include_globe(self, camera: vtkCamera, radius: float) -> None:
         """Extend the clipping range to the globe, which has no bounds in VTK."""

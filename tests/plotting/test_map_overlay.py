@@ -18,7 +18,7 @@ from flowtex._util.array_types import Floats
 from flowtex._util.colours import rgb
 from flowtex.field.earth.projection import EARTH_RADIUS, Projection
 from flowtex.plotting import component  # noqa: F401  which PyVista finds by its entry point
-from flowtex.rendering.camera import Camera, read_camera
+from flowtex.rendering.camera import Camera, apply_camera, read_camera
 from flowtex.rendering.map_overlay import globe_radius, ground_cells
 from flowtex.scene.options import LAND_COLOR
 
@@ -90,12 +90,17 @@ def test_no_surface_hides_its_lines(name: str) -> None:
         assert rows[SIZE[1] // 4 : -SIZE[1] // 4].mean() > 0.97
 
 
-def test_land_has_its_colour_or_none(plotter: Any) -> None:
-    field = ocean("lambert")
+@pytest.mark.parametrize("zoom", [0.3, 1.0, 6.0])
+@pytest.mark.parametrize("name", ["lambert", "globe"])
+def test_land_has_its_colour_or_none(plotter: Any, name: str, zoom: float) -> None:
+    field = ocean(name)
+    assert field.projection is not None
     assert ground_cells(field).land.any() and not ground_cells(winds("robinson")).land.any()
     plotter.set_background("blue")
     handle = plotter.flowtex.add(field, show_scalar_bar=False, graticule=False, **QUICK)
-    camera = read_camera(plotter.camera)
+    focus = field.projection.positions(np.array(16.0), np.array(-12.0))
+    camera = Camera.fit(field.surface, SIZE[0] / SIZE[1], zoom=zoom, focus=focus)
+    apply_camera(camera, plotter.camera)
 
     def colour() -> Floats:
         return np.asarray(at(shot(plotter), field, camera, 16.0, -12.0)[1, 1])
