@@ -201,6 +201,23 @@ def rng() -> np.random.Generator:
     return np.random.default_rng(20061205)
 
 
+def _keep_driver() -> None:
+    """Keep a context of OpenGL: with the last one the driver ends, and the next begins it anew.
+
+    A process that forks frees it, as its threads would be missing in the other one.
+    """
+    from vtkmodules.vtkRenderingCore import vtkRenderWindow
+    from vtkmodules.vtkRenderingOpenGL2 import vtkOpenGLRenderWindow
+
+    window = vtkRenderWindow()
+    if not isinstance(window, vtkOpenGLRenderWindow) or "EGL" not in type(window).__name__:
+        return
+    window.SetOffScreenRendering(True)
+    window.SetSize(8, 8)
+    window.Initialize()
+    os.register_at_fork(before=window.Finalize)
+
+
 @pytest.fixture(scope="session")
 def opengl() -> diagnostics.OpenGLReport:
     """Return what VTK draws with; skip where it cannot, as it would end the test process."""
@@ -210,6 +227,7 @@ def opengl() -> diagnostics.OpenGLReport:
         pytest.fail(told)  # the machine may merely be busy
     if not found.usable:
         pytest.skip(told)
+    _keep_driver()
     return found
 
 
