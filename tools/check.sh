@@ -80,8 +80,9 @@ all | fast) compiled ;;
 esac
 case $which in
 all)
-    # Playwright's event loop excludes that of other tests, so these run in processes of their own.
-    (tests -n "$(workers "$bin")" -m browser "$@") >"$logs/browser" 2>&1 &
+    # Playwright's event loop excludes that of other tests, so these run in processes of their own:
+    # half as many as the others, as a browser draws beside each of them.
+    (tests -n "$((($(workers "$bin") + 1) / 2))" -m browser "$@") >"$logs/browser" 2>&1 &
     browser=$!
     aside="$aside $browser"
     tests -n "$(workers "$bin")" -m "not browser" "$@" || failed="$failed, tests"
