@@ -110,10 +110,15 @@ def first_places(number: Indices) -> Indices:
 def dot(one: Floats, other: Floats) -> Floats:
     """Return inner products of vectors (..., C), of shape (...).
 
-    NumPy's sums over few components are slow.
+    NumPy's sums over few components are slow, and threads of a matrix product wait for each other.
     """
     product = one * other
-    return np.asarray(product @ np.ones(product.shape[-1], product.dtype))
+    if product.shape[-1] == 1:
+        return product[..., 0]
+    result = product[..., 0] + product[..., 1]
+    for component in range(2, product.shape[-1]):
+        result += product[..., component]
+    return np.asarray(result)
 
 
 def cross(one: Floats, other: Floats) -> Floats:

@@ -6,6 +6,8 @@ shown. Work inside :func:`stoppable` is cancelled at its next call of :func:`che
 
 from __future__ import annotations
 
+import os
+import sys
 import threading
 import time
 from collections.abc import Callable, Generator, Iterable, Iterator
@@ -13,7 +15,7 @@ from concurrent.futures import Executor, Future, ThreadPoolExecutor
 from contextlib import contextmanager
 from contextvars import ContextVar
 from functools import cache
-from typing import TYPE_CHECKING, ParamSpec, TypeVar
+from typing import TYPE_CHECKING, Any, ParamSpec, TypeVar
 
 from flowtex._util.forks import renew_after_fork
 from flowtex._util.terminal import terminal
@@ -148,7 +150,7 @@ def waiting(text: str) -> Iterator[Callable[[], None]]:
 
 def track(items: Iterable[T], total: int, text: str, *, show: bool = True) -> Iterator[T]:
     """Yield the items, with a progress bar once they have taken a second."""
-    show = show and has_threads()
+    show = show and has_threads() and _may_show()
     start = time.monotonic()
     bar = task = None
     try:
@@ -178,6 +180,14 @@ def finish(work: Generator[None, None, T], total: int, text: str) -> T:
     for _ in track(parts(), total, text):
         pass
     return results[0]
+
+
+def _may_show() -> bool:
+    """Return whether output may be seen: rich, which takes a while to load, knows for certain."""
+    if "IPython" in sys.modules or "FORCE_COLOR" in os.environ or "TTY_COMPATIBLE" in os.environ:
+        return True
+    stream: Any = sys.stderr  # None without a console
+    return stream is not None and bool(stream.isatty())
 
 
 def _bar() -> Progress:

@@ -237,8 +237,9 @@ def browser_options(mesh: Any, **options: Any) -> tuple[Any, Options]:
     For a PyVista plotter they are those of its first flow texture, with the other objects of the
     scene; ``options`` have precedence.
     """
-    pyvista = sys.modules.get("pyvista")
-    if pyvista is None or not isinstance(mesh, pyvista.BasePlotter):
+    # Where its module is not loaded, as it takes a while, there are no plotters.
+    plotting = sys.modules.get("pyvista.plotting")
+    if plotting is None or not isinstance(mesh, plotting.BasePlotter):
         return mesh, Options.split(**options)
     field, look, bodies = mesh.flowtex.for_browser()
     arguments = {}
@@ -414,11 +415,37 @@ class TileSource:
             for key in level:
                 finer += scene.pyramid.children(key)
             level = finer
-        starts = range(0, len(keys), MOST_THREADS)
+        groups = [[key] for key in keys]
+        if scene.pyramid is not None and not scene.traced:
+            # Windows of tiles that are traced here overlap.
+            groups = scene.pyramid.groups(keys)
+        starts = range(0, len(groups), MOST_THREADS)
         for n in track(starts, len(starts), "Packing tiles"):
-            futures = [self.ask(key, steps) for key in keys[n : n + MOST_THREADS]]
+            futures = []
+            for group in groups[n : n + MOST_THREADS]:
+                make = partial(self._parts_together, group, steps)
+                futures.append(in_pool(make, lambda: self._is_closed))
             for future in futures:
-                yield future.result()
+                yield from future.result()
+
+    def _parts_together(self, keys: Sequence[TileKey], steps: Sequence[int]) -> list[Parts]:
+        """Return the parts of tiles of a level, which are traced together."""
+        if len(keys) == 1:
+            return [self.parts(keys[0], steps)]
+        scene = self.scene
+        assert scene.pyramid is not None
+        made = scene.pyramid.tiles(keys, [scene.source(step) for step in steps])
+        parts = []
+        for key, textures in made.items():
+            tile = None
+            if textures is not None:
+                tile = scene.tile(textures, partial(steps_of, textures.geometry.field))
+            parts.append(tile_parts(key, tile, *steps))
+        # Tiles share their slices, so that none is forgotten before all are packed.
+        for textures in made.values():
+            if textures is not None:
+                textures.forget()
+        return parts
 
     def close(self) -> None:
         """Stop making parts."""

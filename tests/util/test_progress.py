@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import io
 import re
+import sys
 import threading
 from collections.abc import Iterator
 from pathlib import Path
@@ -51,3 +53,34 @@ def test_whatever_a_browser_runs_asks_here_for_threads() -> None:
         if re.search(r"\b(Thread|ThreadPoolExecutor)\(", path.read_text(encoding="utf-8"))
     }
     assert {name for name in made if not name.startswith(OTHERS)} == set()
+
+
+def test_a_bar_that_nobody_sees_is_not_made(monkeypatch: pytest.MonkeyPatch) -> None:
+    made: list[bool] = []
+
+    class Bar:
+        def add_task(self, text: str, total: int) -> int:
+            return len(text) + total
+
+        def start(self) -> None:
+            made.append(True)
+
+        def update(self, task: int, completed: int) -> None:
+            pass
+
+        def stop(self) -> None:
+            pass
+
+    monkeypatch.setattr(progress, "_bar", Bar)
+    monkeypatch.setattr(progress, "BAR_DELAY_S", -1.0)
+    for name in ("FORCE_COLOR", "TTY_COMPATIBLE"):
+        monkeypatch.delenv(name, raising=False)
+    monkeypatch.delitem(sys.modules, "IPython", raising=False)
+    monkeypatch.setattr(sys, "stderr", io.StringIO())
+    assert list(progress.track("ab", 2, "Reading")) == ["a", "b"]
+    monkeypatch.setattr(sys, "stderr", None)
+    assert list(progress.track("ab", 2, "Reading")) == ["a", "b"]
+    assert made == []
+    monkeypatch.setenv("FORCE_COLOR", "1")
+    assert list(progress.track("ab", 2, "Reading")) == ["a", "b"]
+    assert made == [True]
