@@ -21,11 +21,14 @@ from flowtex.sources.maps import (
     shown_positions,
     stretches,
 )
+from flowtex.sources.tripolar import SAME_NODE, cells_across, folded_columns, merged_nodes
 
 #: Greatest width of a tear, as a share of the side across it, where it may begin in a triangle.
 NARROW = 0.6
 OBLIQUE = "+proj=ob_tran"  #: What the definitions of maps have whose poles lie elsewhere.
 HALF_TURN = 180.0  #: In degrees.
+#: Most nodes of a grid with a fold that becomes triangles, across which streaks go on.
+MOST_FOLDED = 500_000
 #: Halvings of a side in the search for the latitude where a map ends.
 HALVINGS = 40
 
@@ -86,25 +89,21 @@ def mesh_on_map(
     """
     projection = projection_of(places, name)
     if projection.is_globe:
-        mesh = MeshPlaces.of_nodes(lon, lat, -180.0)
-        members = np.arange(len(triangles))
-        points = projection.positions(lon, lat)
-        nodes = mesh.nodes
-        weights = mesh.weights
-        return MeshMap(
-            projection, points, triangles, members, nodes, weights, lon, lat, 0, len(lon)
-        )
+        return _on_globe(projection, lon, lat, triangles, np.arange(len(triangles)))
     return _on_flat_map(projection, lon, lat, triangles, np.arange(len(triangles)))
 
 
 def torn_grid(places: Places, name: str | None) -> MeshMap | None:
-    """Put a grid on a flat map as triangles, if the map cuts its cells.
+    """Put a grid on a map as triangles, if a flat map cuts its cells, or it has a fold.
 
     It is ``None`` where the cells of the grid remain whole. Of a grid on lines most maps leave
     whole cells in parts; oblique ones have tears across both rows and columns.
     """
     projection = projection_of(places, name)
-    if projection.is_globe or min(places.a.shape) < 2:
+    mirrored = None
+    if places.a.size <= MOST_FOLDED:
+        mirrored = folded_columns(places)
+    if min(places.a.shape) < 2 or (projection.is_globe and mirrored is None):
         return None
     if places.is_line and OBLIQUE not in projection.name:
         return None
@@ -117,7 +116,7 @@ def torn_grid(places: Places, name: str | None) -> MeshMap | None:
     rows = np.stack([nodes[:, :-1], nodes[:, 1:]], axis=-1)
     lines = np.stack([nodes[:-1], nodes[1:]], axis=-1)
     sides = np.concatenate([rows.reshape(-1, 2), lines.reshape(-1, 2)])
-    if not _is_cut(projection, lon, lat, sides):
+    if mirrored is None and not _is_cut(projection, lon, lat, sides):
         return None
     gap_i = data_gaps(places.a[:, columns], places.b[:, columns])
     gap_j = data_gaps(places.a[:, columns].T, places.b[:, columns].T).T
@@ -132,7 +131,43 @@ def torn_grid(places: Places, name: str | None) -> MeshMap | None:
     number = row * (places.a.shape[1] - 1) + np.minimum(column, places.a.shape[1] - 2)
     is_known = np.isfinite(lon[[a, b, c, d]] + lat[[a, b, c, d]]).all(axis=0)
     is_known = np.tile(is_known, 2)
-    return _on_flat_map(projection, lon, lat, triangles[is_known], np.tile(number, 2)[is_known])
+    triangles = triangles[is_known]
+    members = np.tile(number, 2)[is_known]
+    if mirrored is not None:
+        triangles, members = _across_fold(places, nodes, mirrored[columns], triangles, members)
+    if projection.is_globe:
+        return _on_globe(projection, lon, lat, triangles, members)
+    return _on_flat_map(projection, lon, lat, triangles, members)
+
+
+def _across_fold(
+    places: Places, nodes: Indices, mirrored: Indices, triangles: Indices, members: Indices
+) -> tuple[Indices, Indices]:
+    """Return triangles with those across a fold; nodes that are there twice become one."""
+    a, b, c, d = cells_across(nodes, mirrored).T
+    more = np.concatenate([np.stack([a, b, c], axis=-1), np.stack([a, c, d], axis=-1)])
+    p = places.positions.reshape(-1, 3)
+    known = np.isfinite(p[more]).all(axis=(1, 2))
+    triangles = np.concatenate([triangles, more[known]])
+    members = np.concatenate([members, np.full(known.sum(), members.max(initial=0))])
+    # Lines are there twice at the fold, and where the columns close.
+    edge = np.unique(np.concatenate([nodes[-1], nodes[:, 0], nodes[:, -1], nodes[:, -2]]))
+    edge = edge[np.isfinite(p[edge]).all(axis=-1)]
+    cell = np.nanmedian(np.linalg.norm(np.diff(places.positions[-1], axis=0), axis=-1))
+    same = merged_nodes(p, edge, SAME_NODE * float(cell))
+    triangles = same[triangles]
+    whole = (triangles != np.roll(triangles, 1, axis=1)).all(axis=1)
+    return triangles[whole], members[whole]
+
+
+def _on_globe(
+    projection: Projection, lon: Floats, lat: Floats, triangles: Indices, members: Indices
+) -> MeshMap:
+    """Put triangles on a globe, which cuts none of them."""
+    mesh = MeshPlaces.of_nodes(lon, lat, -HALF_TURN)
+    points = projection.positions(lon, lat)
+    cut = triangles, members, mesh.nodes, mesh.weights
+    return MeshMap(projection, points, *cut, lon, lat, 0, len(lon))
 
 
 def _is_cut(projection: Projection, lon: Floats, lat: Floats, sides: Indices) -> bool:

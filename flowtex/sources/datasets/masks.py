@@ -136,13 +136,10 @@ def find_masks(
     if wanted is not None and wanted not in named:
         own = {str(array.name) for array in velocity}
         others = [name for name, array in named.items() if array.ndim > 1 and name not in own]
-        words = ""
+        words = "but the data have no other variables"
         if others:
-            words = f"; {near_names(str(wanted), others)}"
-        raise FieldError(
-            f"mask is {wanted!r}, but the data have no such variable{words}. To draw all values, "
-            "use mask=False"
-        )
+            words = near_names(str(wanted), others)
+        raise FieldError(f"mask is {wanted!r}; {words} (mask=False draws all values)")
     for name, array in named.items():
         if wanted in (None, name):
             mask = _mask(array, name, is_flag=name in beside, is_wanted=wanted is not None)

@@ -423,7 +423,10 @@ def _nemo_places(
 
 
 def _wraps(places: Places, axis: int = 1) -> bool:
-    """Return whether rows, or columns of polar coordinates (axis 0), go around."""
+    """Return whether rows, or columns of polar coordinates (axis 0), go around.
+
+    Those that repeat their first values at the end do not: another one would follow the last.
+    """
     if not places.is_earth and places.angle is None:
         return False
     p = places.positions
@@ -431,10 +434,12 @@ def _wraps(places: Places, axis: int = 1) -> bool:
         p = np.swapaxes(p, 0, 1)
     step = np.linalg.norm(p[:, 1] - p[:, 0], axis=-1)
     gap = np.linalg.norm(p[:, 0] - p[:, -1], axis=-1)
+    beyond = np.linalg.norm(p[:, 1] - p[:, -1], axis=-1)
     with np.errstate(invalid="ignore"):
         near = gap <= 1.5 * step
+        repeats = np.minimum(gap, beyond) < 0.5 * step
     finite = np.isfinite(gap) & np.isfinite(step) & (step > 0)
-    return bool(finite.any() and near[finite].all())
+    return bool(finite.any() and near[finite].all() and not repeats[finite].all())
 
 
 def unrepeated(places: Places) -> tuple[slice, slice]:
@@ -443,26 +448,41 @@ def unrepeated(places: Places) -> tuple[slice, slice]:
         return slice(None), slice(None)
     p = places.positions
     rows, columns = p.shape[:2]
-
-    def same(one: Floats, other: Floats) -> bool:
-        gap = np.linalg.norm(one - other, axis=-1)
-        cell = np.nanmedian(np.linalg.norm(np.diff(p, axis=1), axis=-1))
-        finite = np.isfinite(gap)
-        return bool(finite.any() and (gap[finite] <= REPEATED * cell).all())
-
+    near = REPEATED * float(np.nanmedian(np.linalg.norm(np.diff(p, axis=1), axis=-1)))
     last = columns
-    for halo in range(min(4, columns // 4), 1, -1):
-        if all(same(p[:, columns - halo + k], p[:, k]) for k in range(halo)):
+    period = columns
+    for halo in range(min(4, columns // 4), 0, -1):
+        if all(_same(p[:, columns - halo + k], p[:, k], near) for k in range(halo)):
             last = columns - halo + 1
+            period = columns - halo
             break
-    inside = p[:, :last]
-    mirrored = (
-        np.roll(inside[rows - 1 - below, ::-1], shift, axis=0)
-        for below in (1, 2)
-        for shift in (0, 1, 2)
-    )
-    is_folded = rows > 4 and any(same(inside[rows - 1], line) for line in mirrored)
+    is_folded = rows > 4 and any(_is_turned_over(p[:, :period], below, near) for below in (1, 2))
     return slice(0, rows - is_folded), slice(0, last)
+
+
+def _same(one: Floats, other: Floats, near: float) -> bool:
+    """Return whether two lines of positions (N, 3) are one."""
+    gap = np.linalg.norm(one - other, axis=-1)
+    finite = np.isfinite(gap)
+    return bool(finite.any() and (gap[finite] <= near).all())
+
+
+def _is_turned_over(p: Floats, below: int, near: float) -> bool:
+    """Return whether the last row of positions (J, I, 3) is a row below it from its end on.
+
+    The columns go around, and none is there twice.
+    """
+    last = p[-1]
+    other = p[-1 - below]
+    known = np.flatnonzero(np.isfinite(last).all(axis=-1))
+    if not len(known):
+        return False
+    number = known[len(known) // 2]
+    gap = np.linalg.norm(other - last[number], axis=-1)
+    if not np.isfinite(gap).any():
+        return False
+    partner = int(np.nanargmin(gap))
+    return _same(last, other[(number + partner - np.arange(len(last))) % len(last)], near)
 
 
 def first_side(
