@@ -30,6 +30,7 @@ from flowtex.sources.meshes.vectors import (
     catalogue,
     data_of,
 )
+from flowtex.sources.meshes.zone_planes import planes_of
 from flowtex.sources.notices import Record
 
 if TYPE_CHECKING:
@@ -64,10 +65,16 @@ class TimeStep:
     grid: Any
     time: float | None
     label: str
+    is_plane: bool = False  #: Whether it is already the plane of several volumes.
 
 
 def time_steps(
-    source: Any, block: int | str | None = None, *, cut: bool = False, record: Record | None = None
+    source: Any,
+    block: int | str | None = None,
+    *,
+    cut: bool = False,
+    plane: str | None = None,
+    record: Record | None = None,
 ) -> Iterator[TimeStep]:
     """Yield the time steps of a mesh, blocks, a list or a reader, or of one block of these.
 
@@ -79,6 +86,8 @@ def time_steps(
         Number or name of a block.
     cut
         Whether a cut is drawn, for which volumes are read as a whole.
+    plane
+        Plane of structured volumes, which is drawn in all blocks together.
     record
         Record of what was chosen automatically.
 
@@ -87,7 +96,9 @@ def time_steps(
     FieldError
         When the list is empty, an item is no mesh, or the block does not exist.
     """
-    options: dict[str, Any] = {"cut": cut, "record": Record() if record is None else record}
+    if record is None:
+        record = Record()
+    options: dict[str, Any] = {"cut": cut, "plane": plane, "record": record}
     if is_reader(source):
         yield from _read(source, block, **options)
     elif isinstance(source, (list, tuple)):
@@ -231,10 +242,17 @@ def several_fault(mesh: Any, label: str) -> str:
     else:
         more = ""
     solid = any(part.max_cell_dimensionality == 3 for part in parts.values())
+    others = ""
+    volumes = _volumes(mesh)
+    if len(volumes) > 1:
+        middle = next(iter(volumes.values())).dimensions[2] // 2
+        others = f', draw a plane of all, as in plane="k={middle}"'
+    if solid:
+        others += ', or cut all volumes, as in slice="z"'
     return (
         f"{label} has {len(parts)} blocks that are not time steps of one mesh: "
         f'{", ".join(listed[:MOST_LISTED])}{more}; choose one, as in block="{next(iter(parts))}"'
-        + (', or cut all volumes, as in slice="z"' if solid else "")
+        f"{others}"
     )
 
 
@@ -282,10 +300,24 @@ def pick(mesh: Any, block: int | str) -> pv.DataSet:
 
 
 def _steps(
-    item: Any, label: str, block: int | str | None, *, series: bool, cut: bool, record: Record
+    item: Any,
+    label: str,
+    block: int | str | None,
+    *,
+    series: bool,
+    cut: bool,
+    plane: str | None,
+    record: Record,
 ) -> Iterator[TimeStep]:
     """Yield the mesh to draw of a mesh or a MultiBlock, or blocks with the same nodes as steps."""
     whole = _wrapped(item, label)
+    zones = {}
+    if block is None and plane is not None:
+        zones = _volumes(whole)
+    if len(zones) > 1:
+        planes = planes_of(zones, plane or "", record)
+        yield TimeStep(_together(planes, record), _time(whole), label, is_plane=True)
+        return
     drawn, combination = drawn_parts(
         whole if block is None else pick(whole, block), series=series, cut=cut
     )
@@ -303,6 +335,17 @@ def _steps(
     if time is None:
         time = _time(part)
     yield TimeStep(part if combination == "one" else _together(drawn, record), time, label)
+
+
+def _volumes(whole: Any) -> Parts:
+    """Return the structured volumes among blocks, unless they are steps of one."""
+    volumes = {}
+    for name, part in parts_of(whole).items():
+        if is_structured(part) and part.max_cell_dimensionality == 3:
+            volumes[name] = part
+    if len(volumes) > 1 and _same_nodes(list(volumes.values())):
+        return {}
+    return volumes
 
 
 def _together(parts: Parts, record: Record) -> pv.UnstructuredGrid:

@@ -70,13 +70,10 @@ def read_meshes(mesh: Any, options: FieldOptions, *, name: str = "") -> SourceAr
     cut = _cut_of(options)
     vectors, steps = series.with_velocity(mesh, options, record)
     first = next(steps)
-    on_grid = parts.is_structured(first.grid) and cut is None
-    refused = {"plane": options.plane, "periodic": periodic, "sign_free": sign_free or None}
-    if not on_grid and (given := [f"{k}={value!r}" for k, value in refused.items() if value]):
-        raise FieldError(
-            f"{', '.join(given)} applies to structured meshes, and this one is not; omit it, or "
-            'cut a volume as in slice="x=0.5"'
-        )
+    if first.is_plane:
+        options = replace(options, plane=None)
+    if cut is not None or not parts.is_structured(first.grid):
+        _refuse_of_grids(options)
     stored, chosen = choose(first.grid, vectors, options.plane, cut, record)
     read_as = MeshVelocity.of(stored, options.components, record)
     velocity = read_as.drawn
@@ -110,6 +107,20 @@ def _preference(options: FieldOptions) -> str:
     if preference not in ("point", "cell"):
         raise FieldError(f'preference is {preference!r}; expected "point" or "cell"')
     return preference
+
+
+def _refuse_of_grids(options: FieldOptions) -> None:
+    """Raise a FieldError for arguments of structured meshes alone."""
+    given = []
+    for name in ("plane", "periodic", "sign_free"):
+        value = getattr(options, name)
+        if value:
+            given.append(f"{name}={value!r}")
+    if given:
+        raise FieldError(
+            f"{', '.join(given)} applies to structured meshes, and this one is not; omit it, or "
+            'cut a volume as in slice="x=0.5"'
+        )
 
 
 def _masks(velocity: MeshArray, options: FieldOptions) -> Masks:

@@ -105,14 +105,16 @@ def with_velocity(
 ) -> tuple[str | None, Iterator[TimeStep]]:
     """Return the name of the velocity, if it is known, and the steps that have it."""
     vectors = options.vectors
-    steps = parts.time_steps(source, options.block, cut=is_cut(options), record=record)
+    cut = is_cut(options)
+    steps = parts.time_steps(source, options.block, cut=cut, plane=options.plane, record=record)
     if vectors is None and not is_cut(options):
         first = next(steps, None)
         if first is not None:
             # The first step usually moves: then no step is read twice.
             steps = chain([first], steps)
             if _may_be_wall(first.grid):
-                vectors = wall_stress(parts.time_steps(source, options.block), record)
+                again = parts.time_steps(source, options.block, plane=options.plane)
+                vectors = wall_stress(again, record)
     return vectors, having(steps, vectors, record)
 
 

@@ -61,9 +61,10 @@ def test_zones_of_cgns_are_blocks_by_their_paths(tmp_path: Path) -> None:
     with says(
         f"{path}: step 0 has 3 blocks that are not time steps of one mesh: 0 (Wing/Zone 1, "
         "4 x 3 x 2 nodes), 1 (Wing/Zone 2, 6 x 3 x 2 nodes), 2 (Tail/Zone 1, 4 x 3 x 2 nodes); "
-        'choose one, as in block="Wing/Zone 1", or cut all volumes, as in slice="z"'
+        'choose one, as in block="Wing/Zone 1", draw a plane of all, as in plane="k=1", or cut all '
+        'volumes, as in slice="z"'
     ):
-        FlowField.from_file(path, plane="k=0")
+        FlowField.from_file(path)
 
 
 def test_cgns_tells_what_it_holds(tmp_path: Path) -> None:

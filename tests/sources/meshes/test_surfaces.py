@@ -358,7 +358,7 @@ def test_volumes_are_cut_together() -> None:
     left, right = uniform(box()), uniform(box())
     right.origin = (1, 0, 0)
     blocks = pv.MultiBlock({"left": left, "right": right})
-    with says('choose one, as in block="left", or cut all volumes, as in slice="z"'):
+    with says('choose one, as in block="left", draw a plane of all, as in plane="k=2", or cut'):
         FlowField.from_pyvista(blocks)
     with pytest.warns(Notice, match="2 blocks are drawn together: left, right"):
         field = FlowField.from_pyvista(blocks, slice="z=0.4")
