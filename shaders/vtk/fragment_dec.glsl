@@ -2,7 +2,11 @@
 //#include common/shade.glsl
 #ifdef FLOWTEX_DEFERRED
 uniform sampler2D u_shown; // colour under the texture, and the texture itself, of each pixel
-uniform int u_margin;      // pixels of it before the first of the frame
+#ifdef FLOWTEX_PROJECTED
+in vec3 flowtexPixelVSOutput; // pixel of it, before the division by the third number
+#else
+uniform int u_margin; // pixels of it before the first of the frame
+#endif
 #else
 in vec2 flowtexCoordinateVSOutput;
 in vec3 flowtexPositionVSOutput;

@@ -2,7 +2,12 @@
   // its share of the light, and lights them next.
   vec3 flowtexColour = (ambientColor + diffuseColor) / max(ambientIntensity + diffuseIntensity, FLOWTEX_LEAST_LIGHTNESS);
 #ifdef FLOWTEX_DEFERRED
-  vec4 flowtexShown = texelFetch(u_shown, ivec2(gl_FragCoord.xy) + u_margin, 0);
+#ifdef FLOWTEX_PROJECTED
+  ivec2 flowtexPixel = ivec2(floor(flowtexPixelVSOutput.xy / flowtexPixelVSOutput.z));
+#else
+  ivec2 flowtexPixel = ivec2(gl_FragCoord.xy) + u_margin;
+#endif
+  vec4 flowtexShown = texelFetch(u_shown, flowtexPixel, 0);
 #ifdef FLOWTEX_OWN
   if (!u_showLevel)
     flowtexShown.rgb = flowtexShade(flowtexColour, flowtexShown.a);

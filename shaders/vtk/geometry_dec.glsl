@@ -1,6 +1,9 @@
 // VTK puts a geometry shader in when it draws edges; what it does not pass on is lost. VTK names
 // the outputs of a stage by it: VSOutput, GSOutput.
-#ifndef FLOWTEX_DEFERRED
+#if defined(FLOWTEX_PROJECTED)
+in vec3 flowtexPixelVSOutput[];
+out vec3 flowtexPixelGSOutput;
+#elif !defined(FLOWTEX_DEFERRED)
 in vec2 flowtexCoordinateVSOutput[];
 out vec2 flowtexCoordinateGSOutput;
 in vec3 flowtexPositionVSOutput[];

@@ -1,4 +1,6 @@
-#ifndef FLOWTEX_DEFERRED
+#if defined(FLOWTEX_PROJECTED)
+    flowtexPixelGSOutput = flowtexPixelVSOutput[i];
+#elif !defined(FLOWTEX_DEFERRED)
     flowtexPositionGSOutput = flowtexPositionVSOutput[i];
     flowtexCoordinateGSOutput = flowtexCoordinateVSOutput[i];
 #ifdef FLOWTEX_TRIANGLES

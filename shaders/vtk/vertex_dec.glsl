@@ -1,4 +1,8 @@
-#ifndef FLOWTEX_DEFERRED
+#if defined(FLOWTEX_PROJECTED)
+in vec3 flowtexPosition;
+uniform mat4 u_toPixels; // from positions to pixels of the texture that is shown
+out vec3 flowtexPixelVSOutput;
+#elif !defined(FLOWTEX_DEFERRED)
 in vec2 flowtexCoordinate;
 out vec2 flowtexCoordinateVSOutput;
 in vec3 flowtexPosition;

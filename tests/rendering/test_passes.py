@@ -109,9 +109,13 @@ def near(plotter: Any, handle: Any) -> None:
     plotter.camera.zoom(60)
 
 
-CHANGES = [clip, cull, edges, place, hide, veil, parallel, sample, silhouette, near]
+def depths(plotter: Any, handle: Any) -> None:
+    plotter.enable_eye_dome_lighting()
+
+
+CHANGES = [clip, cull, edges, place, hide, veil, parallel, sample, silhouette, near, shade, depths]
 #: Those that keep the sum in the fragments of the mesh.
-FORWARD = [shade, enlarge, see_through, lines, dots]
+FORWARD = [see_through, lines, dots]
 
 
 def picture(mesh: Any, change: Callable[[Any, Any], None] | None, **options: Any) -> Bytes:
@@ -173,6 +177,30 @@ def test_passes_draw_what_fragments_do(
     # Samples beside the middle of a pixel belong to triangles that do not cover it.
     assert_same_in_fragments(draw, monkeypatch, 16 if change is sample else 2)
     assert deferred
+
+
+@pytest.mark.parametrize("change", [None, near, place, edges])
+@pytest.mark.parametrize("make", [saddle, ball])
+def test_larger_picture_of_a_pass_has_the_pixels_of_the_frame(
+    make: Callable[[], Any], change: Callable[[Any, Any], None] | None
+) -> None:
+    """A pass that smooths a picture draws it with four times as many pixels along a side."""
+
+    def both(plotter: Any, handle: Any) -> None:
+        enlarge(plotter, handle)
+        if change:
+            change(plotter, handle)
+
+    mesh = make()
+    plain = picture(mesh, change).astype(float)
+    smooth = picture(mesh, both).astype(float)
+    # The filter of the pass, over a bit more than a pixel, takes contrast and moves nothing.
+    difference = np.abs(smooth - plain).mean()
+    for axis in (0, 1):
+        for pixels in (-1, 1):
+            moved = np.roll(plain, pixels, axis)
+            assert difference < 0.7 * np.abs(smooth - moved).mean()
+    assert smooth.std() > 0.9 * plain.std() > 20
 
 
 def test_renderers_of_a_window_and_linked_views_have_their_own(

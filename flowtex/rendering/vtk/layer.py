@@ -34,6 +34,7 @@ from flowtex.rendering.uniforms import (
     uniforms,
     variants,
 )
+from flowtex.rendering.vtk.area import PassArea
 from flowtex.rendering.vtk.flow_mapper import (
     COORDINATE,
     CORNERS,
@@ -97,7 +98,8 @@ def _unbind(texture: vtkTextureObject) -> None:
 
 OWNER = "flowtex"  #: Name under which PyVista registers the replacements.
 
-SHOWN = {"FLOWTEX_DEFERRED", "FLOWTEX_OWN"}  #: Variants of a shader that shows sums.
+#: Variants of a shader that shows sums.
+SHOWN = {"FLOWTEX_DEFERRED", "FLOWTEX_OWN", "FLOWTEX_PROJECTED"}
 #: Shaders, and our parts of them.
 STAGES = [(s, p) for s in ("vertex", "geometry", "fragment") for p in ("dec", "impl")]
 
@@ -139,7 +141,9 @@ class FlowLayer:
         #: Whether passes before the frame sum the pixels, and what they have drawn.
         self.deferred = False
         self.shown: vtkTextureObject | None = None
-        self.shown_margin = 0  #: Pixels of it before the first of the frame.
+        self.shown_area: PassArea | None = None  #: Where in it the pixels of the frame are.
+        #: Whether a pass of the renderer draws the actor into a picture of another size.
+        self.is_projected = False
         self._is_blank = False
         self._observed = observe_draws(self._mapper, self.before_draw)
 
@@ -209,7 +213,12 @@ class FlowLayer:
         found = variants(self.textures, moving=moving, near=near, sparse=sparse)
         if not self.deferred:
             return found
-        return found | {"FLOWTEX_DEFERRED"} | ({"FLOWTEX_OWN"} if self._has_own_colours else set())
+        found |= {"FLOWTEX_DEFERRED"}
+        if self._has_own_colours:
+            found |= {"FLOWTEX_OWN"}
+        if self.is_projected:
+            found |= {"FLOWTEX_PROJECTED"}
+        return found
 
     @property
     def even_grain(self) -> float | None:
@@ -237,6 +246,7 @@ class FlowLayer:
 
     def _write_text(self, renderer: Any) -> None:
         self.deferred = is_deferred(self.actor, renderer, self.textures)
+        self.is_projected = self.deferred and renderer.GetPass() is not None
         # An actor that shows what passes have drawn has one text, however they sum.
         if self.deferred:
             variant = self.variant & SHOWN
@@ -245,15 +255,23 @@ class FlowLayer:
         if variant == self._variant:
             return
         self._variant = variant
-        arrays = {"flowtexCoordinate": COORDINATE, "flowtexPosition": POSITION}
-        if self.textures.geometry.corners is not None:
-            arrays["flowtexCorners"] = CORNERS
-        if self.textures.image is not None:
-            arrays["flowtexImage"] = IMAGE
-        if not self.deferred:
+        arrays: dict[str, str] = {}
+        if self._needs_position:
             self._write_position()
-        map_attributes(self._mapper, {} if self.deferred else arrays)
+            arrays["flowtexPosition"] = POSITION
+        if not self.deferred:
+            arrays["flowtexCoordinate"] = COORDINATE
+            if self.textures.geometry.corners is not None:
+                arrays["flowtexCorners"] = CORNERS
+            if self.textures.image is not None:
+                arrays["flowtexImage"] = IMAGE
+        map_attributes(self._mapper, arrays)
         insert_text(self.actor, OWNER, "", variant, before=True)
+
+    @property
+    def _needs_position(self) -> bool:
+        """Whether the vertices of the mesh have their positions from the anchor."""
+        return self.is_projected or not self.deferred
 
     def _write_position(self) -> None:
         geometry = self.textures.geometry
@@ -293,12 +311,26 @@ class FlowLayer:
         if not self.view.between and program.IsUniformUsed("u_slicesNext"):
             # At a step there is no next one, and the sampler needs a texture of its kind.
             program.SetUniformi("u_slicesNext", self._gpu["u_slices"].GetTextureUnit())
+        if program.IsUniformUsed("u_shown"):
+            self._write_shown(program)
+
+    def _write_shown(self, program: vtkShaderProgram) -> None:
+        """Write what the passes have drawn, and where its pixels are, to a program."""
         shown = self.shown
-        if shown is not None and program.IsUniformUsed("u_shown"):
-            if shown.GetTextureUnit() < 0:
-                shown.Activate()
-            program.SetUniformi("u_shown", shown.GetTextureUnit())
-            program.SetUniformi("u_margin", self.shown_margin)
+        area = self.shown_area
+        if shown is None or area is None:
+            return
+        if shown.GetTextureUnit() < 0:
+            shown.Activate()
+        program.SetUniformi("u_shown", shown.GetTextureUnit())
+        if not self.is_projected:
+            program.SetUniformi("u_margin", area.margin)
+            return
+        to_pixels = np.eye(4)
+        to_pixels[:2, :2] = np.diag(area.size / 2)
+        to_pixels[:2, 3] = area.corner + area.size / 2
+        matrix = to_pixels @ self._to_picture(area.view)
+        program.SetUniformMatrix("u_toPixels", pv.vtkmatrix_from_array(matrix.T))
 
     def after_frame(self) -> None:
         """Release the texture units."""
@@ -315,16 +347,21 @@ class FlowLayer:
         matrix (4, 4) leads from the world to the picture, whose size is in pixels.
         """
         geometry = self.textures.geometry
-        place = np.eye(4)
-        place[:3, :3] = geometry.frame.T
-        place[:3, 3] = geometry.center + geometry.frame.T @ self.view.anchor
-        whole = matrix @ self.place @ place
+        whole = self._to_picture(matrix)
         focus = whole @ [*(geometry.local(self.view.focus) - self.view.anchor), 1.0]
         corners = np.array([[-1.0, 1.0, -1.0], [-1.0, -1.0, 1.0], [focus[2] / focus[3]] * 3])
         points = np.linalg.solve(whole, np.vstack([corners, np.ones(3)]))
         points = points[:3] / points[3]
         along, up = (points[:, 1:] - points[:, :1]).T / size[:, None]
         return points[:, 0], along, up
+
+    def _to_picture(self, matrix: Floats) -> Floats:
+        """Return the matrix (4, 4) of positions from the anchor, given that of the world."""
+        geometry = self.textures.geometry
+        place = np.eye(4)
+        place[:3, :3] = geometry.frame.T
+        place[:3, 3] = geometry.center + geometry.frame.T @ self.view.anchor
+        return np.asarray(matrix @ self.place @ place)
 
     def box(self, matrix: Floats, size: Ints) -> tuple[int, int, int, int] | None:
         """Return first and end of the columns and rows in which the layer may be seen."""
@@ -432,7 +469,7 @@ class FlowLayer:
         else:
             self.view.anchor = focus
         self._retire("u_nodes")
-        if not self.deferred:
+        if self._needs_position:
             self._write_position()
 
     def choose_levels(self, renderer: Any, view: TileView) -> Ints:
@@ -511,7 +548,6 @@ def is_deferred(actor: pv.Actor, renderer: Any, textures: TextureSet) -> bool:
         and actor.prop.opacity == 1
         and actor.prop.style == "Surface"
         and not actor.GetForceTranslucent()
-        and renderer.GetPass() is None
         and not renderer.GetRenderWindow().GetStereoRender()
     )
 

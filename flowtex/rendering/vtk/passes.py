@@ -111,7 +111,7 @@ class DeferredPasses:
                 self._parts[layer].sum(buffers, area)
                 layer.after_frame()
                 layer.shown = buffers.shown.texture
-                layer.shown_margin = area.margin
+                layer.shown_area = area
             buffers.even.draw(surface[0], buffers.sums, buffers.shown, area)
         places.Deactivate()
         state.PopFramebufferBindings()
