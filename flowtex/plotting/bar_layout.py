@@ -131,7 +131,9 @@ def place_bar(bar: vtkScalarBarActor, renderer: Any, options: Mapping[str, Any] 
 def _arrange(renderer: Any) -> None:
     """Place bars from left to right, and in a row above where there is no room."""
     width, height = renderer.GetSize()
-    dpi = renderer.GetRenderWindow().GetDPI()
+    window = renderer.GetRenderWindow()
+    # In a picture that VTK draws in tiles, it enlarges texts as well.
+    dpi = window.GetDPI() * window.GetTileScale()[1]
     points = float(np.clip(height * TEXT_SHARE * POINTS / dpi, *TEXT_POINTS))
     line = points * dpi / POINTS
     gap = TEXT_PAD * line

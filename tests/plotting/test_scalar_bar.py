@@ -30,14 +30,14 @@ def sheet(height: float = 0.0) -> FlowField:
     return FlowField.from_arrays(points, velocity, scalars=values, units={LONG: "kg/(m s²)"})
 
 
-def pixels(size: tuple[int, int], names: tuple[str, ...], **options: Any) -> Any:
+def pixels(size: tuple[int, int], names: tuple[str, ...], *, scale: int = 1, **options: Any) -> Any:
     """A grey picture with the bars of these scalars; the surface has one colour, grey."""
     made: Any = pv.Plotter(off_screen=True, window_size=list(size))
     made.set_background("gray")
     for number, name in enumerate(names):
         look = {"cmap": np.full((2, 3), 128, np.uint8), "strength": 0.0, "samples": 1}
         made.flowtex.add(sheet(0.1 * number), scalars=name, opacity=0.0, **look, **options)
-    shot = made.screenshot(return_img=True)
+    shot = made.screenshot(return_img=True, scale=scale)
     bars = list(made.scalar_bars.values())
     boxes = [(*bar.GetPosition(), bar.GetWidth(), bar.GetHeight()) for bar in bars]
     made.close()
@@ -59,6 +59,18 @@ def test_bars_are_inside_and_apart(size: tuple[int, int], names: tuple[str, ...]
         for x2, y2, width2, height2 in boxes[:n]:
             aside = x >= x2 + width2 or x2 >= x + width
             assert aside or y >= y2 + height2 or y2 >= y + height
+
+
+@pytest.mark.parametrize("vertical", [True, False])
+def test_bar_has_the_same_share_of_a_larger_picture(vertical: bool) -> None:
+    options = {"scalar_bar_args": {"vertical": vertical}}
+    ends = []
+    for scale in (1, 3):
+        shot, _ = pixels(SIZES[0], ("speed",), scale=scale, **options)
+        rows, columns = np.nonzero((np.abs(shot - shot[0, -1]) > 8).any(axis=-1))
+        ends.append(np.array([rows.min(), rows.max(), columns.min(), columns.max()]) / scale)
+    # Texts have whole points, of which a label has ten.
+    assert np.abs(ends[0] - ends[1]).max() < 4
 
 
 def test_text_lies_on_a_plate_and_keeps_its_size_on_a_large_view() -> None:
