@@ -112,12 +112,19 @@ def dot(one: Floats, other: Floats) -> Floats:
 
     NumPy's sums over few components are slow, and threads of a matrix product wait for each other.
     """
+    if one.shape != other.shape or one.ndim != 2 or len(one) <= BLOCK_NODES:
+        return _dot(one, other)
+    result = np.empty(len(one), np.result_type(one, other))
+    for block in row_blocks(len(one), 1):
+        result[block] = _dot(one[block], other[block])
+    return result
+
+
+def _dot(one: Floats, other: Floats) -> Floats:
     product = one * other
-    if product.shape[-1] == 1:
-        return product[..., 0]
-    result = product[..., 0] + product[..., 1]
-    for component in range(2, product.shape[-1]):
-        result += product[..., component]
+    result = product[..., 0]
+    for component in range(1, product.shape[-1]):
+        result = result + product[..., component]
     return np.asarray(result)
 
 

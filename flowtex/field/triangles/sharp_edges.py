@@ -119,6 +119,11 @@ def split_nodes(
     sharp = edges.sharp(points, crosses[around])
     at_edge = np.zeros(count, dtype=bool)
     at_edge[edges.ends[:, sharp]] = True
+    ends = edges.ends[:, sharp]
+    # As many faces as sharp edges meet in a node, and one more on a border.
+    is_tip = np.bincount(ends.ravel(), minlength=count) >= NOISE_FACES
+    if _in_noise(is_tip, ends, count)[at_edge].all():
+        return triangles, np.arange(count)
     is_loose = at_edge.take(near).ravel()
     loose = np.flatnonzero(is_loose)  # corners
     if not len(loose):
@@ -133,7 +138,8 @@ def split_nodes(
     )
     face = np.asarray(scipy.sparse.csgraph.connected_components(graph, directed=False)[1], np.intp)
     nodes = near.ravel()[loose[first_places(face)]]  # those of the faces
-    is_new = ~_in_noise(nodes, edges.ends[:, sharp], count)[nodes]
+    is_tip = np.bincount(nodes, minlength=count) >= NOISE_FACES
+    is_new = ~_in_noise(is_tip, ends, count)[nodes]
     is_new[first_places(numbered(nodes)[1])] = False
     number = np.where(is_new, count - 1 + np.cumsum(is_new), nodes)
     near.ravel()[loose] = number[face]
@@ -142,12 +148,11 @@ def split_nodes(
     return result, np.concatenate([np.arange(count), nodes[is_new]])
 
 
-def _in_noise(nodes: Indices, ends: Indices, count: int) -> Bools:
+def _in_noise(is_tip: Bools, ends: Indices, count: int) -> Bools:
     """Return which nodes (count,) lie in noise: many tips are there, or sharp edges end soon.
 
-    ``nodes`` are the nodes of all faces, (F,), and ``ends`` the nodes of sharp edges, (2, E).
+    Tips are nodes of many faces, (count,), and ``ends`` the nodes of sharp edges, (2, E).
     """
-    is_tip = np.bincount(nodes, minlength=count) >= NOISE_FACES
     if np.count_nonzero(is_tip) <= max(FEWEST_TIPS, MOST_TIPS * count):
         return np.zeros(count, dtype=bool)
     graph = scipy.sparse.coo_array((np.ones(ends.shape[1], bool), ends), shape=(count, count))

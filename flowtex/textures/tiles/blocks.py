@@ -33,6 +33,8 @@ REST_SPEED = 0.25
 AROUND = 16
 #: Range of a scalar that is constant up to rounding, as a share of its greatest value.
 SAME = 1e-6
+#: Most triangles of a block whose errors are measured.
+MOST_MEASURED = 500
 #: Percentile of the errors, or speeds, of triangles that counts as the greatest.
 MOST_SHARE = 98
 
@@ -164,17 +166,22 @@ def triangle_roughness(field: FlowField, triangles: Indices, parts: list[Indices
     """Return errors at the next level of a field on triangles, as :func:`block_roughness` does.
 
     The three nodes of a triangle extrapolate a linear function to the far node of its neighbour;
-    the difference measures curvature. ``parts`` has the numbers of the triangles of each block.
+    the difference measures curvature. ``parts`` has the numbers of the triangles of each block, of
+    which some are measured where they are many.
     """
     points, velocity = field.points[0], field.velocity[0, 0]
-    beside = neighbours(points, triangles)
-    here, corner = np.nonzero(beside > np.arange(len(triangles))[:, None])
-    there = beside[here, corner]
+    # An odd step takes both kinds where triangles are pairs.
+    some = [part[:: (len(part) // MOST_MEASURED) | 1] for part in parts]
+    rows, number = np.unique(np.concatenate(some), return_inverse=True)
+    beside = neighbours(points, triangles)[rows]
+    row, corner = np.nonzero(beside > rows[:, None])
+    here = rows[row]
+    there = beside[row, corner]
     # The nodes at the corner, at both ends of the edge, and across.
     inner = [triangles[here, (corner + k) % 3] for k in range(3)]
     nodes = np.stack([*inner, triangles[there].sum(axis=1) - inner[1] - inner[2]], axis=-1)
     a, b, c, d = points[nodes.T]
-    normal = triangle_normals(points, triangles)[here]
+    normal = triangle_normals(points, triangles[rows])[row]
     area = np.maximum(dot(normal, normal), np.finfo(float).tiny)
     second = dot(np.cross(d - a, c - a), normal) / area
     third = dot(np.cross(b - a, d - a), normal) / area
@@ -194,15 +201,23 @@ def triangle_roughness(field: FlowField, triangles: Indices, parts: list[Indices
             errors = np.maximum(errors, error * length)
     errors[np.isnan(errors)] = np.inf
     # A triangle without neighbours has no error.
-    greatest, longest = np.zeros(len(triangles)), np.full(len(triangles), np.finfo(float).tiny)
-    if len(begins := np.flatnonzero(np.diff(here, prepend=-1))):
-        for most, found in ((greatest, errors), (longest, length)):
-            most[here[begins]] = np.maximum.reduceat(found, begins)
-    return np.array(
-        [
-            np.percentile(greatest[part], MOST_SHARE, method="lower") / longest[part].max()
-            if len(part)
-            else 0.0
-            for part in parts
-        ]
-    )
+    greatest = _greatest_by_row(errors, row, np.zeros(len(rows)))
+    longest = _greatest_by_row(length, row, np.full(len(rows), np.finfo(float).tiny))
+    ends = np.cumsum([len(part) for part in some])
+    members = np.split(number, ends[:-1])
+    return np.array([_most_error(greatest[part], longest[part]) for part in members])
+
+
+def _greatest_by_row(values: Floats, row: Indices, result: Floats) -> Floats:
+    """Write the greatest of the values (n,) with each number of a row, in order, into a result."""
+    begins = np.flatnonzero(np.diff(row, prepend=-1))
+    if len(begins):
+        result[row[begins]] = np.maximum.reduceat(values, begins)
+    return result
+
+
+def _most_error(errors: Floats, lengths: Floats) -> float:
+    """Return the error of a block by errors of its triangles, which are multiplied by lengths."""
+    if not len(errors):
+        return 0.0
+    return float(np.percentile(errors, MOST_SHARE, method="lower") / lengths.max())

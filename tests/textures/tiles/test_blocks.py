@@ -6,8 +6,10 @@ import numpy as np
 import pytest
 from triangle_meshes import sphere
 
-from flowtex._util.array_types import Floats
+from flowtex._util.array_types import Floats, Indices
 from flowtex.field import FlowField
+from flowtex.field.triangles.triangle_nodes import triangle_normals
+from flowtex.textures.tiles import blocks
 from flowtex.textures.tiles.blocks import BLOCK_CELLS, SMOOTH_CELLS
 from flowtex.textures.tiles.grid_pyramid import GridPyramid
 from flowtex.textures.tiles.triangle_pyramid import TrianglePyramid
@@ -119,3 +121,27 @@ def test_triangles_of_smooth_flow_may_be_larger(monkeypatch: pytest.MonkeyPatch)
     assert (even == 2).all() and even.size == 16
     middle = pyramids[1].places(1)[..., 0]
     assert (uneven[middle > 0.4] == 1).all() and (uneven[middle < -0.2] == 2).all()
+
+
+def test_some_triangles_of_a_large_block_tell_how_rough_it_is(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr("flowtex.textures.tiles.triangle_pyramid.ROOT_NODES", 2000)
+    points, triangles = sphere(5)
+    x, y, z = points.T
+    waves = np.stack([np.sin(6 * y), np.cos(5 * z), np.sin(7 * x)], axis=-1)
+    velocity = waves - (waves * points).sum(axis=1, keepdims=True) * points
+    flow = FlowField.from_triangles(points, triangles, velocity)
+    measured: list[int] = []
+
+    def recorded(points: Floats, triangles: Indices) -> Floats:
+        measured.append(len(triangles))
+        return triangle_normals(points, triangles)
+
+    monkeypatch.setattr(blocks, "triangle_normals", recorded)
+    monkeypatch.setattr(blocks, "MOST_MEASURED", 100)
+    some = TrianglePyramid(flow).enlarged(1)
+    monkeypatch.setattr(blocks, "MOST_MEASURED", len(triangles))
+    every = TrianglePyramid(flow).enlarged(1)
+    assert measured[0] < 0.6 * measured[1]
+    assert np.abs(some / every - 1).max() < 0.1
