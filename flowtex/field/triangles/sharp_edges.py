@@ -10,11 +10,11 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-import scipy
 
 from flowtex._util.array_types import Bools, Floats, Indices
 from flowtex._util.arrays import bounds, dot, first_places, norm, numbered, row_blocks
 from flowtex.field.triangles.triangle_nodes import (
+    connected_items,
     neighbours,
     touching,
     triangle_normals,
@@ -132,11 +132,7 @@ def split_nodes(
     joined = at_edge[edges.ends] & ~sharp
     corners = (3 * edges.near + edges.near_corners)[joined]
     beyond = (3 * edges.far + edges.far_corners)[joined]
-    links = rank[corners], rank[beyond]
-    graph = scipy.sparse.coo_array(
-        (np.ones(len(links[0]), bool), links), shape=(len(loose), len(loose))
-    )
-    face = np.asarray(scipy.sparse.csgraph.connected_components(graph, directed=False)[1], np.intp)
+    face = connected_items(rank[corners], rank[beyond], len(loose))
     nodes = near.ravel()[loose[first_places(face)]]  # those of the faces
     is_tip = np.bincount(nodes, minlength=count) >= NOISE_FACES
     is_new = ~_in_noise(is_tip, ends, count)[nodes]
@@ -155,8 +151,7 @@ def _in_noise(is_tip: Bools, ends: Indices, count: int) -> Bools:
     """
     if np.count_nonzero(is_tip) <= max(FEWEST_TIPS, MOST_TIPS * count):
         return np.zeros(count, dtype=bool)
-    graph = scipy.sparse.coo_array((np.ones(ends.shape[1], bool), ends), shape=(count, count))
-    chain = scipy.sparse.csgraph.connected_components(graph, directed=False)[1]
+    chain = connected_items(ends[0], ends[1], count)
     size = np.bincount(chain)
     tips = np.bincount(chain, is_tip)
     is_noise = (tips > TIP_SHARE * size) | (size < LEAST_CHAIN)

@@ -14,7 +14,7 @@ from flowtex import FlowField
 from flowtex._util.array_types import Floats, Indices
 from flowtex.field.quantities import PointValues
 from flowtex.field.triangles.sharp_edges import split_nodes
-from flowtex.field.triangles.triangle_nodes import triangle_normals
+from flowtex.field.triangles.triangle_nodes import connected_items, triangle_normals
 from flowtex.textures.tiles.clusters import Levels
 from flowtex.trace.trace import paths
 
@@ -91,6 +91,24 @@ def test_noise_has_no_faces_and_a_box_beside_it_keeps_its_own(rng: np.random.Gen
     # A cube of 10 x 10 squares a side has 12 edges with 9 nodes inside, and 8 corners.
     assert len(new) == 12 * 9 + 8 * 2
     np.testing.assert_array_equal(split[: len(terrain[1])], terrain[1])
+
+
+def test_faces_in_noise_are_not_searched(
+    rng: np.random.Generator, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    searches: list[int] = []
+
+    def recorded(begins: Indices, ends: Indices, count: int) -> Indices:
+        searches.append(count)
+        return connected_items(begins, ends, count)
+
+    monkeypatch.setattr("flowtex.field.triangles.sharp_edges.connected_items", recorded)
+    points, triangles = sheet(rng.normal(size=(60, 60)))
+    split, origin = split_nodes(points, triangles)
+    assert split is triangles
+    assert len(origin) == len(points)
+    # Only chains of sharp edges are connected, not the corners of faces.
+    assert searches == [len(points)]
 
 
 @pytest.mark.parametrize("name", BODIES)
