@@ -158,3 +158,21 @@ def test_one_point_has_one_velocity(end: int, turned: bool) -> None:
     np.testing.assert_allclose(speed, np.hypot(0.3, 1.1))
     along = pole.lines(field.index_velocity.components[0])[pole.line, :, pole.component]
     np.testing.assert_allclose(pole.vector(along) @ pole.plane, [0.3, -1.1, 0], atol=1e-12)
+
+
+def test_lines_around_a_round_pole_need_no_table(monkeypatch: pytest.MonkeyPatch) -> None:
+    even = poles(sphere())[0]
+    uneven = poles(sphere(bent=0.3))[0]
+    searched: list[int] = []
+    interp = np.interp
+
+    def recorded(x: Floats, xp: Floats, fp: Floats) -> Floats:
+        searched.append(len(x))
+        return np.asarray(interp(x, xp, fp))
+
+    monkeypatch.setattr(np, "interp", recorded)
+    position = np.array([[0.0, 3.2, 35.9], [0.5, 2.0, 4.0]])
+    np.testing.assert_allclose(even.index(even.place(position)), position, atol=1e-9)
+    assert searched == []
+    np.testing.assert_allclose(uneven.index(uneven.place(position)), position, atol=1e-9)
+    assert searched

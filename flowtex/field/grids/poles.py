@@ -58,10 +58,23 @@ class Pole:
 
     @cached_property
     def _even(self) -> bool:
-        step = 2 * np.pi / self.cells
-        return bool(
-            np.abs(self._angles - self._angles[0] - step * self._lines).max() < EVEN_CELLS * step
-        )
+        away = self._angles - self._angles[0] - self._step * self._lines
+        return bool(np.abs(away).max() < EVEN_CELLS * self._step)
+
+    @cached_property
+    def _is_round(self) -> bool:
+        return float(np.ptp(self._lengths)) < EVEN_CELLS
+
+    @property
+    def _step(self) -> float:
+        """Angle between two lines around the pole that lie evenly."""
+        return 2 * np.pi / self.cells
+
+    def _length_along(self, around: Floats) -> Floats | float:
+        """Return the lengths of the first cells along lines around the pole, 1 in the mean."""
+        if self._is_round:
+            return 1.0
+        return np.asarray(np.interp(around, self._lines, self._lengths))
 
     @cached_property
     def _lines(self) -> Floats:
@@ -91,16 +104,22 @@ class Pole:
         """Return positions in the plane, (2, N) in cells, of positions (2, N) before the pole."""
         around = position[1 - self.component]
         around = around - self.cells * np.floor(around / self.cells)
-        angle = np.interp(around, self._lines, self._angles)
-        length = self.depth(position) * np.interp(around, self._lines, self._lengths)
+        length = self.depth(position) * self._length_along(around)
+        if self._even:
+            angle = self._angles[0] + self._step * around
+        else:
+            angle = np.interp(around, self._lines, self._angles)
         return np.stack([length * np.cos(angle), length * np.sin(angle)])
 
     def index(self, place: Floats) -> Floats:
         """Return positions (2, N) of positions in the plane, the inverse of :meth:`place`."""
         angle = np.arctan2(place[1], place[0])
         angle += 2 * np.pi * np.ceil((self._angles[0] - angle) / (2 * np.pi))
-        around = np.interp(angle, self._angles, self._lines)
-        depth = np.hypot(place[0], place[1]) / np.interp(around, self._lines, self._lengths)
+        if self._even:
+            around = (angle - self._angles[0]) / self._step
+        else:
+            around = np.interp(angle, self._angles, self._lines)
+        depth = np.hypot(place[0], place[1]) / self._length_along(around)
         result = np.empty_like(place)
         result[1 - self.component] = around
         result[self.component] = self.line + self.inward * depth
