@@ -25,8 +25,8 @@ if TYPE_CHECKING:
 
 #: Names of axes of time, and horizontal ones, where no attribute says so.
 TIMES = re.compile(r"^(t|n?times?|time_?\w*|\w+_time|dates?|frames?)$", re.IGNORECASE)
-ROWS = re.compile(r"^(y\w*|j\w*|lat\w*|nlat|eta\w*|south_north\w*|rlat)$", re.IGNORECASE)
-COLUMNS = re.compile(r"^(x\w*|i\w*|lon\w*|nlon|xi\w*|west_east\w*|rlon)$", re.IGNORECASE)
+ROWS = re.compile(r"^(y\w*|iy|j(?!x$)\w*|lat\w*|nlat|eta\w*|south_north\w*|rlat)$", re.IGNORECASE)
+COLUMNS = re.compile(r"^(x\w*|jx|i(?!y$)\w*|lon\w*|nlon|xi\w*|west_east\w*|rlon)$", re.IGNORECASE)
 #: Units of longitude and latitude.
 ON_EARTH = re.compile(r"^deg(ree)?s?_?(north|east|N|E)$")
 #: Name of the dimension of nodes, where there is a mesh.

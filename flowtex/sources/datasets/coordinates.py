@@ -194,7 +194,7 @@ def _on_earth(
         at = _at_nodes(lon, lat, dims, shape, drawn)
         if at is None or (degrees := _in_degrees(*at, lon, lat)) is None:
             continue
-        if degrees[0] is not at[0]:
+        if degrees[1] is not at[1]:
             turned = ", converted from radians"
         else:
             turned = ""
@@ -493,6 +493,8 @@ def _in_degrees(
     with np.errstate(invalid="ignore"):
         far = np.nanmax(np.abs(b), initial=0.0)
         wide = np.nanmax(np.abs(a), initial=0.0)
+    if lon.ndim > 1 and far <= 90.001 and wide > 720:  # HYCOM counts further turns
+        return a % 360.0, b
     if far > 90.001 or wide > 720:
         if all(units.parsed(unit) is not None for unit in given):
             text = f"{lat.name} reaches {far:g} and {lon.name} {wide:g}"

@@ -295,8 +295,11 @@ def _speeds(arrays: Sequence[xr.DataArray]) -> Iterator[Pair]:
             continue
         turns = [turn for turn in arrays if _turns(speed, turn)]
         stem = OF_SPEED.sub("", _standard(speed))
-        own = [turn for turn in turns if OF_SPEED.sub("", _standard(turn)) == stem]
-        for turn in own or turns:
+        own = [turn for turn in turns if OF_SPEED.sub("", _standard(turn)) == stem] or turns
+        # Of several with one standard name, names tell which belong together.
+        named = OF_SPEED.sub("", str(speed.name))
+        same = [turn for turn in own if OF_SPEED.sub("", str(turn.name)) == named]
+        for turn in same or own:
             meaning = convention(speed, turn)
             words = f"{speed.name} and {turn.name}, {meaning.words}"
             guessed = meaning.kind == ANGLE and not meaning.is_declared

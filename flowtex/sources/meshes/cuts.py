@@ -181,7 +181,10 @@ def check_cut(mesh: pv.DataSet, cut: Cut | None) -> None:
     if not mesh.n_cells:
         raise FieldError("the mesh has no cells; check the file or filter that made it")
     if dimension < 2:
-        raise FieldError("the mesh has only points or lines; expected a surface, or a volume")
+        raise FieldError(
+            "the mesh has only points or lines; expected a surface, or a volume. Join points of a "
+            "surface, as in flowtex.show(mesh.delaunay_2d())"
+        )
     if cut is not None and dimension == 2:
         name = type(cut).__name__.lower()
         raise FieldError(f"{name} is {cut.text}, but the mesh is already a surface; omit {name}")

@@ -16,6 +16,8 @@ if TYPE_CHECKING:
     import xarray as xr
 
 AXES = ("X", "Y", "Z", "T")
+#: Axes whose first letters suggest other ones.
+OF_REGCM = {"iy": "Y", "jx": "X"}
 #: Attributes of what a name suggests, as cf_xarray sets them.
 ATTRIBUTES = {
     **{axis: {"axis": axis} for axis in AXES},
@@ -91,6 +93,8 @@ def guess_axes(ds: xr.Dataset) -> xr.Dataset:
         has_dates = coordinate.dtype.kind == "m" or is_dates(coordinate)
         if name not in placed and coordinate.ndim == 1 and has_dates:
             kinds = ["time"]
+        elif str(name).lower() in OF_REGCM:
+            kinds = [OF_REGCM[str(name).lower()]]
         else:
             kinds = [kind for kind, pattern in regex.items() if pattern.match(str(name).lower())]
         for kind in kinds:

@@ -44,7 +44,7 @@ POLARWARD = ("u_r", "u_phi", "w")
 #: Names of the ends of intervals, which are two as well.
 BOUNDS = re.compile(r"bnd|bound", re.IGNORECASE)
 #: Attributes that components keep.
-KEPT = ("units", "grid_mapping", "mesh", "location")
+KEPT = ("units", "grid_mapping", "mesh", "location", "description", "GRIB_uvRelativeToGrid")
 
 
 def of_array(array: xr.DataArray, *, several: bool) -> xr.Dataset:

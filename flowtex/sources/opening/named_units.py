@@ -75,7 +75,7 @@ def name_and_unit(name: str) -> tuple[str, str]:
 
 def _in_brackets(name: object) -> tuple[str, str]:
     """Return a name without the unit in brackets at its end, and the unit; empty without one."""
-    stem, unit = split_unit(str(name))
+    stem, unit = split_unit(str(name).strip())
     if unit and units.parsed(unit) is not None:
         return stem, unit
     return str(name), ""

@@ -10,6 +10,7 @@ import grid_forms
 import label_forms
 import mesh_forms
 import numpy as np
+import public_forms
 import pytest
 import time_forms
 import topology_forms
@@ -27,6 +28,7 @@ MODULES = (
     grid_forms,
     label_forms,
     mesh_forms,
+    public_forms,
     time_forms,
     topology_forms,
     turned_forms,
