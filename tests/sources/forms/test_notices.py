@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import shlex
 import warnings
+from functools import cache
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -48,8 +49,9 @@ def options_of(*, flow: Annotated[FieldFlags | None, FLAT] = None) -> dict[str, 
     return arguments(flow)
 
 
+@cache
 def typed_in_shell(text: str) -> dict[str, Any]:
-    """Return the options of words that are typed in a shell."""
+    """Return the options of words that are typed in a shell; many notices say the same ones."""
     options: dict[str, Any] = shell(shlex.split(text))
     return options
 
