@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import gc
 import weakref
+from dataclasses import replace
 from functools import cache
 from itertools import pairwise
 from typing import Any
@@ -20,6 +21,8 @@ from scipy.ndimage import binary_erosion
 import flowtex
 from flowtex.plotting.component import point_camera
 from flowtex.rendering import mesh_levels
+from flowtex.rendering.camera import Camera, apply_camera
+from flowtex.rendering.vtk import slice_levels
 from flowtex.scene.options import ViewOptions
 
 SIZE = (240, 180)
@@ -330,3 +333,39 @@ def test_streaks_do_not_smear_towards_the_horizon(tilt: int, opengl: Any) -> Non
     far[drawn[0] + 10 : drawn[0] + len(drawn) // 3, 60:-60] = True
     found = streaks(picture, -right, vanishing - up, far)
     assert found["angle"] < {60: 4.0, 75: 7.0, 80: 9.0}[tilt]
+
+
+def level_of_slices(handle: Any) -> int:
+    """Return the coarsest mip level of the slices that are drawn."""
+    return int(handle.surface._base._gpu["u_slices"].GetMaxLevel())
+
+
+@pytest.mark.parametrize("field", [gyre_field, globe, ring])
+def test_near_views_need_no_mip_levels(
+    opengl: Any, monkeypatch: pytest.MonkeyPatch, field: Any
+) -> None:
+    """They are the same pictures with all levels, and farther ones get these."""
+    flow = field()
+    first = Camera.aside(flow.points[flow.valid], 1.5)
+    focus = np.array(first.focal_point)
+    pictures: dict[str, list[Any]] = {}
+    levels: dict[str, list[int]] = {}
+    for name, cells in (("needed", slice_levels.FINEST_CELLS), ("all", 0.0), ("none", np.inf)):
+        monkeypatch.setattr(slice_levels, "FINEST_CELLS", cells)
+        pictures[name], levels[name] = [], []
+        with contextlib.closing(pv.Plotter(off_screen=True, window_size=[120, 90])) as plotter:
+            handle = plotter.flowtex.add(flow, scalars=False, lighting=False)
+            for distance in (0.05, 0.5, 1.0, 2.0):
+                place = focus + distance * (np.array(first.position) - focus)
+                apply_camera(replace(first, position=tuple(place)), plotter.camera)
+                plotter.camera_set = True
+                plotter.renderer.reset_camera_clipping_range()
+                plotter.render()
+                pictures[name].append(plotter.screenshot(return_img=True))
+                levels[name].append(level_of_slices(handle))
+    np.testing.assert_array_equal(pictures["needed"], pictures["all"])
+    assert levels["needed"][-1] == levels["all"][0] > 0
+    if field is gyre_field:  # the other grids have cells without a width, or narrow ones
+        assert levels["needed"][0] == 0
+    assert levels["none"] == [0, 0, 0, 0]
+    assert (np.array(pictures["none"]) != pictures["all"]).any(), "no view reads levels"

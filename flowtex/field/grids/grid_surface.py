@@ -81,6 +81,19 @@ class GridSurface(NodeSurface):
         longest = np.maximum(j[:, :-1], j[:, 1:]), np.maximum(i[:-1], i[1:])
         return np.asarray(np.hypot(*longest))
 
+    @cached_property
+    def least_extent(self) -> float:
+        """Lower bound of the extents of cells in any direction; 0 where one has no area."""
+        j = np.diff(self.points, axis=0)
+        i = np.diff(self.points, axis=1)
+        least = np.inf
+        for up, across in product((j[:, :-1], j[:, 1:]), (i[:-1], i[1:])):
+            area = norm(np.cross(up, across))[self.cells]
+            length = np.hypot(norm(up), norm(across))[self.cells]
+            extents = area / np.maximum(length, np.finfo(float).tiny)
+            least = min(least, float(extents.min(initial=np.inf)))
+        return least
+
     def in_cells(self, vectors: Floats) -> Floats:
         """Return vectors (J - 1, I - 1, 3) as they are: a cell need not be flat."""
         return vectors

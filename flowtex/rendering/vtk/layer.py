@@ -46,6 +46,7 @@ from flowtex.rendering.vtk.flow_mapper import (
     set_triangles,
 )
 from flowtex.rendering.vtk.frame import weak_callback
+from flowtex.rendering.vtk.slice_levels import needs_levels
 from flowtex.settings import Settings
 from flowtex.textures.geometry import SurfaceGeometry
 from flowtex.textures.texture_set import LayerPrefetch, TextureSet
@@ -137,6 +138,7 @@ class FlowLayer:
         self._gpu: dict[str, vtkTextureObject] = {}
         self._context = 0  # the time at which VTK made the context of these
         self._retired: list[vtkTextureObject] = []
+        self._has_levels = layers is not None  #: Whether slices have mip levels; tiles' always do.
         self.view = ViewState()
         #: Whether passes before the frame sum the pixels, and what they have drawn.
         self.deferred = False
@@ -421,7 +423,10 @@ class FlowLayer:
                 layers = self._layers(step)
             else:
                 layers = self._prefetch.take(step)
-        return {"texels": layers, "levels": textures.geometry.levels}
+        levels = 0
+        if self._has_levels:
+            levels = textures.geometry.levels
+        return {"texels": layers, "levels": levels}
 
     def look(self) -> None:
         """Choose the shader, and transform the camera and the anchor to the mesh's coordinates."""
@@ -444,6 +449,11 @@ class FlowLayer:
         height = 2 * camera.GetDistance() * np.tan(np.radians(camera.GetViewAngle() / 2))
         self.height = float(2 * camera.GetParallelScale() if parallel else height) / scale
         self.view.pixel = self.height / renderer.GetSize()[1]
+        if not self._has_levels:
+            settings = self._settings
+            self._has_levels = needs_levels(self.textures, settings, self.view, placed, self.mesh)
+            if self._has_levels:
+                self._retire("u_slices", "u_slicesNext")
         self._write_text(renderer)
         self._move_anchor()
 
