@@ -173,7 +173,7 @@ def find_places(
         if places.angle is None and not any(axis_kind(array, d) in (LEVEL, TIME) for d in dims):
             _record_axes(lines[1], lines[0], record)
         return places
-    _check_two_of_space(array, dims)
+    check_two_of_space(array, dims)
     names = sorted({str(n) for n in array.coords} | {str(n) for ds in datasets for n in ds.coords})
     raise FieldError(
         f"{array.name!r} with the dimensions {', '.join(dims)} has no positions; the coordinates "
@@ -232,8 +232,14 @@ def _record_axes(x: xr.DataArray, y: xr.DataArray, record: Record) -> None:
     record("coordinates", text, exchanged, notable=True)
 
 
-def _check_two_of_space(array: xr.DataArray, dims: tuple[str, ...]) -> None:
-    """Raise a FieldError for values along time and one axis of space, as of Hovmöller diagrams."""
+def check_two_of_space(array: xr.DataArray, dims: tuple[str, ...]) -> None:
+    """Check that values are not along time and one axis of space, as of Hovmöller diagrams.
+
+    Raises
+    ------
+    FieldError
+        When they are; the text has the line that draws such a diagram.
+    """
     times = [dim for dim in dims if axis_kind(array, dim) == TIME]
     others = [dim for dim in dims if dim not in times]
     if len(times) != 1 or len(others) != 1:

@@ -23,7 +23,7 @@ from flowtex.field.options import FieldOptions
 from flowtex.field.steps import LazySteps
 from flowtex.sources.datasets import axes, labels
 from flowtex.sources.datasets.align import align, common
-from flowtex.sources.datasets.coordinates import LATITUDE, LONGITUDE
+from flowtex.sources.datasets.coordinates import LATITUDE, LONGITUDE, check_two_of_space
 from flowtex.sources.datasets.levels import is_pressure
 from flowtex.sources.datasets.select import are_partners, two_names, variable, velocity_unit
 from flowtex.sources.datasets.values import (
@@ -116,6 +116,7 @@ def read_section(
             f"{u} has {', '.join(map(str, one.dims))} and {v} {', '.join(map(str, two.dims))}; "
             "interpolate one to the levels of the other, as in ds.w.interp(...)"
         )
+    check_two_of_space(two, tuple(map(str, two.dims)))
     level, along = _axes(one, {*choice.sel, *choice.isel})
     for dim in (level, along):
         lines = axes.line_of(one, dim), axes.line_of(two, dim)

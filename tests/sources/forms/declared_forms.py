@@ -265,6 +265,16 @@ def profiles_over_time() -> Any:
     return ds
 
 
+@form(
+    error=r"'w' has the axes time and height, .*paths dheight/dtime = w", options={"vectors": "u,w"}
+)
+def profiles_with_a_vertical_component() -> Any:
+    ds = earth(LON, LAT, HOURS).isel(lon=0, drop=True).rename(lat="height", v="w")
+    ds.height.attrs = {"units": "m"}
+    ds.w.attrs = {"units": "m s-1", "standard_name": "upward_air_velocity"}
+    return ds.transpose("time", "height")
+
+
 @variants(["azimuth", "az"])
 def scan_clockwise_from_north(name: str) -> Any:
     turn, r = np.arange(0, 360, 10.0), np.linspace(0.5, 2, 9)
