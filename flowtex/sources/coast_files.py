@@ -47,8 +47,8 @@ def as_coast(source: Any) -> Any:
         path = checked_source(source)
         if not path.exists():
             raise FieldError(
-                f"coastlines is {str(source)!r}, a file that does not exist; expected a GeoJSON, "
-                "shapefile or GeoPackage with lines or polygons"
+                f"coastlines is {str(source)!r}, which does not exist; expected True, False, or "
+                "the path of a GeoJSON, shapefile or GeoPackage with lines or polygons"
             )
         return _read(str(path), path.stat().st_mtime_ns)
     if not hasattr(source, "__geo_interface__"):

@@ -158,7 +158,7 @@ def test_a_picture_is_drawn_along_the_flow(
         ("render {gyre}", "missing option --output: picture to write"),
         (
             "render {gyre} -o {tmp}/a.png --coastlines-file {tmp}/no.shp",
-            "no.shp', a file that does not exist",
+            "no.shp', which does not exist",
         ),
         (
             "render {gyre} -o {tmp}/a.png --u a --v b --vectors c",

@@ -16,7 +16,7 @@ import pytest
 from waiting import PATIENCE_S
 
 from flowtex import FlowField
-from flowtex.errors import FieldError
+from flowtex.errors import FieldError, Notice
 from flowtex.sources.meshes.plot3d import find_grid, find_solution
 from flowtex.sources.read_files import describe, file_identity
 from flowtex.sources.reader_errors import errors_of_file
@@ -230,14 +230,18 @@ def test_plot3d_of_several_grids(tmp_path: Path) -> None:
     assert FlowField.from_file(tmp_path / "a.g", plane="k=0", block=1).shape == (6, 3)
     with says(
         f"{tmp_path / 'a.g'}: the mesh has 2 blocks that are not time steps of one mesh: 0 (0, "
-        '5 x 4 x 3 nodes), 1 (1, 3 x 6 x 2 nodes); choose one, as in block="0", or cut all '
-        'volumes, as in slice="z"'
+        '5 x 4 x 3 nodes), 1 (1, 3 x 6 x 2 nodes); choose one, as in block="0", draw a plane of '
+        'all, as in plane="k=1", or cut all volumes, as in slice="z"'
     ):
-        FlowField.from_file(tmp_path / "a.g", plane="k=0")
+        FlowField.from_file(tmp_path / "a.g")
+    with pytest.warns(Notice, match="2 blocks are drawn together: 0, 1"):
+        both = FlowField.from_file(tmp_path / "a.g", plane="k=0")
+    assert both.triangles is not None
+    assert len(both.triangles) == 2 * (4 * 3 + 2 * 5)
     assert describe(tmp_path / "a.g").problem == (
         "the file has 2 blocks that are not time steps of one mesh: 0 (0, 5 x 4 x 3 nodes), "
-        '1 (1, 3 x 6 x 2 nodes); choose one, as in block="0", or cut all '
-        'volumes, as in slice="z"'
+        '1 (1, 3 x 6 x 2 nodes); choose one, as in block="0", draw a plane of '
+        'all, as in plane="k=1", or cut all volumes, as in slice="z"'
     )
     assert describe(tmp_path / "a.g", block=1).size == "3 x 6 x 2 nodes"
 
@@ -437,7 +441,7 @@ def test_logging_is_left_as_it_was(tmp_path: Path) -> None:
 MANY_THREADS = """
 import sys
 from concurrent.futures import ThreadPoolExecutor
-from flowtex.errors import FieldError
+from flowtex.errors import FieldError, Notice
 from flowtex.field import FlowField
 
 def faults(path):

@@ -136,10 +136,12 @@ def find_masks(
     if wanted is not None and wanted not in named:
         own = {str(array.name) for array in velocity}
         others = [name for name, array in named.items() if array.ndim > 1 and name not in own]
-        words = "but the data have no other variables"
+        words = "the data have no other variables"
         if others:
             words = near_names(str(wanted), others)
-        raise FieldError(f"mask is {wanted!r}; {words} (mask=False draws all values)")
+        if not words.endswith("?"):
+            words = f"{words}."
+        raise FieldError(f"mask is {wanted!r}; {words} To draw all values, use mask=False")
     for name, array in named.items():
         if wanted in (None, name):
             mask = _mask(array, name, is_flag=name in beside, is_wanted=wanted is not None)

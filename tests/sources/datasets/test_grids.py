@@ -56,7 +56,10 @@ def test_masked_and_unset_positions_are_land() -> None:
     mask = (np.arange(20)[:, None] > 4) & np.ones(30, bool)
     masked = curvilinear(lon, lat, tmask=(("y", "x"), mask.astype(float)))
     assert np.array_equal(FlowField.from_xarray(masked, globe=True).valid, mask)
-    with pytest.raises(FieldError, match=r"^mask is 'tmsk'; did you mean 'tmask'\? \(mask=False"):
+    with pytest.raises(
+        FieldError,
+        match=r"^mask is 'tmsk'; did you mean 'tmask'\? To draw all values, use mask=False",
+    ):
         FlowField.from_xarray(masked, mask="tmsk")
     lon[15:], lat[15:] = 0.0, 0.0  # as where a model leaves out processors
     assert not FlowField.from_xarray(curvilinear(lon, lat), globe=True).valid[15:].any()
