@@ -441,7 +441,7 @@ def test_logging_is_left_as_it_was(tmp_path: Path) -> None:
 MANY_THREADS = """
 import sys
 from concurrent.futures import ThreadPoolExecutor
-from flowtex.errors import FieldError, Notice
+from flowtex.errors import FieldError
 from flowtex.field import FlowField
 
 def faults(path):
