@@ -317,9 +317,8 @@ def page(browser: Browser) -> Iterator[Page]:
 @pytest.fixture(scope="session")
 def jupyter(tmp_path_factory: pytest.TempPathFactory) -> Iterator[LabServer]:
     """Yield the one JupyterLab of the session; skip where it is not installed."""
-    for name in ("jupyterlab", "jupyter_server_proxy"):
-        if find_spec(name) is None:  # to import it takes seconds
-            pytest.skip(f"{name} is not installed")
+    if find_spec("jupyterlab") is None:  # to import it takes seconds
+        pytest.skip("jupyterlab is not installed")
     from lab import lab
 
     with lab(tmp_path_factory.mktemp("lab")) as started:

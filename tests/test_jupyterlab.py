@@ -131,6 +131,37 @@ def test_a_cell_shows_a_flow_that_both_sides_can_change(notebook: Lab) -> None:
     wait_until(lambda: lab.said(THREADS) == "[]", lambda: lab.said(THREADS))
 
 
+CHANGE_THEME = """async (theme) => {
+  await jupyterapp.commands.execute("apputils:change-theme", { theme });
+}"""
+#: Colours of the first view and of its texts, and of the notebook around it.
+COLOURS = """() => {
+  const view = document.querySelector(".flowtex");
+  const around = getComputedStyle(document.querySelector(".jp-Notebook")).backgroundColor;
+  return [getComputedStyle(view).backgroundColor, getComputedStyle(view).color, around];
+}"""
+
+
+def test_a_view_has_the_ground_of_the_notebook_in_any_theme(notebook: Lab) -> None:
+    """A cell makes a view before it is in the page, and texts have the colours of the theme."""
+    lab, page = notebook, notebook.page
+    try:
+        for theme in ("JupyterLab Dark", "JupyterLab Light"):
+            page.evaluate(CHANGE_THEME, theme)
+            if theme == "JupyterLab Dark":
+                lab.run(SHOW)
+            page.wait_for_function(DRAWN, arg=1)
+            dark = theme == "JupyterLab Dark"
+            page.wait_for_function(
+                "(dark) => document.querySelector('.flowtex').matches('.flowtex-dark') === dark",
+                arg=dark,
+            )
+            ground, ink, around = page.evaluate(COLOURS)
+            assert ground == around != ink
+    finally:
+        page.evaluate(CHANGE_THEME, "JupyterLab Light")
+
+
 CHANGING = """import flowtex, ipywidgets
 def gyre(turn):
     field = flowtex.examples.double_gyre_field(shape=(40, 60))
@@ -270,7 +301,7 @@ def test_a_saved_notebook_shows_pictures_where_no_kernel_runs(
 ) -> None:
     """Whether or not JupyterLab is set to save the state of widgets; it leaves the notebook."""
     shown, page = notebook, notebook.page
-    page.set_viewport_size({"width": 900, "height": 1300})
+    page.set_viewport_size({"width": 1100, "height": 1300})
     shown.run(SHOW)
     shown.run(BOXES)
     shown.run(PLOTTER)

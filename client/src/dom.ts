@@ -110,20 +110,25 @@ export class Ground {
   /** Red, green and blue of the page, from 0 to 1. */
   colour = WHITE;
   private readonly root: HTMLElement;
+  private readonly changed: () => void;
 
   /** `changed` is called when the page goes from light to dark, or back. */
   constructor(root: HTMLElement, lifetime: Lifetime, changed: () => void) {
     this.root = root;
-    const look = () => {
-      const before = String(this.colour);
-      this.update();
-      if (String(this.colour) !== before) changed();
-    };
+    this.changed = changed;
+    const look = () => this.look();
     const observer = new MutationObserver(look);
     for (const element of [document.documentElement, document.body]) {
       lifetime.watch(observer, element, { attributeFilter: THEME });
     }
     lifetime.listen(isDarkWished(), "change", look);
+  }
+
+  /** Look at the page once more, and tell of another colour. */
+  look(): void {
+    const before = String(this.colour);
+    this.update();
+    if (String(this.colour) !== before) this.changed();
   }
 
   /** Look at the page once more. */

@@ -88,7 +88,10 @@ export class Viewer extends SceneView {
     lifetime.observe(new ResizeObserver(() => this.resize()), this.stage);
     const seen = new IntersectionObserver((entries) => {
       this.isVisible = entries[entries.length - 1].isIntersecting;
-      if (this.isVisible) this.request();
+      if (!this.isVisible) return;
+      // Notebooks may put a view into the page after it was made.
+      this.page.look();
+      this.request();
     });
     lifetime.observe(seen, root);
     lifetime.listen(document, "visibilitychange", () => this.request());

@@ -1507,12 +1507,13 @@ let colours=[];for(let at=element;at;){colours.push(getComputedStyle(at).backgro
 parentElement??(root instanceof ShadowRoot?root.host:null)}let pen=new OffscreenCanvas(1,1).getContext("2d",{willReadFrequently:!0});
 if(!pen)return WHITE;let{colorScheme}=getComputedStyle(document.documentElement),isDark=colorScheme.includes("dark")&&(!colorScheme.
 includes("light")||isDarkWished().matches);for(let colour of[isDark?"#121212":"white",...colours.reverse()])pen.fillStyle=
-colour,pen.fillRect(0,0,1,1);return Array.from(pen.getImageData(0,0,1,1).data.subarray(0,3),value=>value/255)}var Ground=class{colour=WHITE;root;constructor(root,lifetime,changed){
-this.root=root;let look=()=>{let before=String(this.colour);this.update(),String(this.colour)!==before&&changed()},observer=new MutationObserver(
-look);for(let element of[document.documentElement,document.body])lifetime.watch(observer,element,{attributeFilter:THEME});
-lifetime.listen(isDarkWished(),"change",look)}update(){let{root}=this;if(!root.parentElement)return;this.colour=groundAround(
-root.parentElement);let[r,g,b]=this.colour.map(value=>Math.round(255*value));root.classList.toggle("flowtex-dark",(.299*
-r+.587*g+.114*b)/255<DARK),root.style.setProperty("--ground",`rgb(${r} ${g} ${b})`)}};var STEPS3=[1,2,2.5,5],DEGREES2=[1,2,5,10,15,30,60,90],DECADES=[[1],[1,3],[1,2,5]],SAME2=1e-9,BEYOND2=.004,[LARGE,SMALL2]=[
+colour,pen.fillRect(0,0,1,1);return Array.from(pen.getImageData(0,0,1,1).data.subarray(0,3),value=>value/255)}var Ground=class{colour=WHITE;root;changed;constructor(root,lifetime,changed){
+this.root=root,this.changed=changed;let look=()=>this.look(),observer=new MutationObserver(look);for(let element of[document.
+documentElement,document.body])lifetime.watch(observer,element,{attributeFilter:THEME});lifetime.listen(isDarkWished(),"\
+change",look)}look(){let before=String(this.colour);this.update(),String(this.colour)!==before&&this.changed()}update(){
+let{root}=this;if(!root.parentElement)return;this.colour=groundAround(root.parentElement);let[r,g,b]=this.colour.map(value=>Math.
+round(255*value));root.classList.toggle("flowtex-dark",(.299*r+.587*g+.114*b)/255<DARK),root.style.setProperty("--ground",
+`rgb(${r} ${g} ${b})`)}};var STEPS3=[1,2,2.5,5],DEGREES2=[1,2,5,10,15,30,60,90],DECADES=[[1],[1,3],[1,2,5]],SAME2=1e-9,BEYOND2=.004,[LARGE,SMALL2]=[
 1e6,.001],LONGEST=7;function ticksOf(low,high,log=!1,most=5){return high-low>SAME2*Math.max(Math.abs(low),Math.abs(high))?
 log&&decades(low,high,most)||evenly(low,high,most):Number.isFinite(low)?[{value:low,text:textOf(low,Math.abs(low)/1e3||1)}]:
 []}function offsetOf(low,high,most){let isLong=offset=>ticksOf(low-offset,high-offset,!1,most).some(({text})=>text.length>
@@ -2336,11 +2337,11 @@ lm-suppress-shortcuts","true"),root.setAttribute("role","application"),this.pane
 new Ground(root,this.lifetime,()=>this.isOnPage&&this.recolour({background:null})),this.pointers=new Pointers(this),this.
 graphics.users.add(this),this.observe()}observe(){let{lifetime,root}=this;lifetime.observe(new ResizeObserver(()=>this.panel.
 arrange()),root),lifetime.observe(new ResizeObserver(()=>this.resize()),this.stage);let seen=new IntersectionObserver(entries=>{
-this.isVisible=entries[entries.length-1].isIntersecting,this.isVisible&&this.request()});lifetime.observe(seen,root),lifetime.
-listen(document,"visibilitychange",()=>this.request()),lifetime.listen(window,"resize",()=>this.resize())}stats(){let{objects,
-users}=this.graphics;return{...this.lifetime.stats(),objects,users:users.size,frames:this.frames}}dispose(){this.player.
-playing=!1,super.dispose(),this.canvas.width=this.canvas.height=0,this.root.remove()}setHeader(header,keepsCamera=!1){if(header.
-format!==FORMAT){let fault=`The scene has format ${header.format}, and this client reads format ${FORMAT}.`;return this.
+this.isVisible=entries[entries.length-1].isIntersecting,this.isVisible&&(this.page.look(),this.request())});lifetime.observe(
+seen,root),lifetime.listen(document,"visibilitychange",()=>this.request()),lifetime.listen(window,"resize",()=>this.resize())}stats(){
+let{objects,users}=this.graphics;return{...this.lifetime.stats(),objects,users:users.size,frames:this.frames}}dispose(){
+this.player.playing=!1,super.dispose(),this.canvas.width=this.canvas.height=0,this.root.remove()}setHeader(header,keepsCamera=!1){
+if(header.format!==FORMAT){let fault=`The scene has format ${header.format}, and this client reads format ${FORMAT}.`;return this.
 panel.fail(fault,"Use the client of the flowtex that made the scene.")}this.requests.stop();let old=this.header;if(old?.
 generation!==void 0&&old.generation===header.generation)return this.takeDifferences(old,header);old&&this.holdDraft(STEADY_MS),
 this.given=header,header={...header,...this.grounded(header)},this.header=header,this.settings={...header.settings,...header.
