@@ -26,7 +26,7 @@ SYNONYMS = {
     **dict.fromkeys(("fixed_points", "equilibria"), "critical_points"),
     **dict.fromkeys(("colorbar", "cbar", "legend"), "show_scalar_bar"),
     **dict.fromkeys(("length", "streak_length", "streaklength", "line_length"), "samples"),
-    "window_size": "size",
+    **dict.fromkeys(("window_size", "figsize", "width"), "size"),
     **{"alpha": "opacity", "duration": "seconds", "bgcolor": "background", "crs": "projection"},
 }
 LONGEST_SHOWN = 100  #: Longest value that is written in a message, in letters.

@@ -240,7 +240,9 @@ class Feed:
             if not self._closed:
                 job()
         except Exception as error:  # the caller is in another thread
-            if self._closed:
+            # Libraries refuse work while the interpreter ends.
+            is_ending = not threading.main_thread().is_alive()
+            if self._closed or is_ending:
                 return
             traceback.print_exception(error)
             self.settled.set()

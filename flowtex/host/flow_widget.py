@@ -22,11 +22,13 @@ import numpy as np
 from numpy.typing import ArrayLike
 from PIL import Image
 
+from flowtex._util.arguments import is_number
 from flowtex._util.array_types import Bytes
 from flowtex._util.colours import rgb
 from flowtex._util.forks import ProcessLock
 from flowtex.errors import FieldError, install_extra
 from flowtex.field import FlowField
+from flowtex.field.dates import time_within
 from flowtex.field.locate import locate
 from flowtex.field.options import FieldOptions, accepts_options
 from flowtex.field.quantities import values_at
@@ -170,7 +172,8 @@ class FlowWidget(AppearanceAttributes, SettingTraits, Displayed):
         coordinates), ``parallel``, ``parallel_scale`` and ``view_angle`` (degrees). A dict with
         some of these changes only them.
     time
-        The time shown of a time-varying field, in the field's unit.
+        The time shown of a time-varying field, in the field's unit. It may be set to ``"last"``,
+        or to a date such as ``"2000-01-02 12:00"`` if the times of the field are dates.
     clock
         Clock of the streaming of a steady flow, in seconds.
     playing
@@ -205,7 +208,10 @@ class FlowWidget(AppearanceAttributes, SettingTraits, Displayed):
     _shaders: Any = traitlets.List([{}, {}]).tag(sync=True)
     _key = traitlets.Unicode().tag(sync=True)
     camera = CheckedTrait(_camera).tag(echo_update=False)
-    time = traitlets.Float(0.0).tag(sync=True, echo_update=False)
+    #: A number, or what :meth:`_check_time` makes one of.
+    time = traitlets.Union([traitlets.Float(0.0), traitlets.Instance(object)]).tag(
+        sync=True, echo_update=False
+    )
     clock = traitlets.Float(0.0).tag(sync=True, echo_update=False)
     playing = traitlets.Bool(default_value=False).tag(sync=True)
     point: Any = traitlets.Dict(allow_none=True, default_value=None).tag(
@@ -403,16 +409,19 @@ class FlowWidget(AppearanceAttributes, SettingTraits, Displayed):
 
     @traitlets.validate("time")
     def _check_time(self, proposal: Any) -> float:
-        times = self.field.times
-        value = float(proposal["value"])
-        first = float(times[0])
-        last = float(times[-1])
-        slack = SLACK * (last - first)
-        if not first - slack <= value <= last + slack:
-            raise TraitValueError(
-                f"time is {value!r}; expected {first:g} to {last:g}, the times of the field"
-            )
-        return min(max(value, first), last)
+        """Return a time, which may be a date, as a number."""
+        field = self.field
+        value = proposal["value"]
+        first = float(field.times[0])
+        last = float(field.times[-1])
+        if is_number(value):
+            slack = SLACK * (last - first)
+            if first - slack <= float(value) <= last + slack:
+                return min(max(float(value), first), last)
+        try:
+            return time_within(field.start, field.times, value)
+        except FieldError as error:
+            raise TraitValueError(str(error)) from None
 
     @traitlets.validate("point")
     def _check_point(self, proposal: Any) -> Any:

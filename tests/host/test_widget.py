@@ -8,6 +8,7 @@ import sys
 import threading
 from collections.abc import Callable, Iterator
 from contextvars import ContextVar
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -80,6 +81,8 @@ def test_every_setting_is_a_trait_of_both_sides(make: Make) -> None:
         ("kernel", "gauss", r"^kernel is 'gauss'; expected 'hann' or 'box' or 'ramp'"),
         ("noise", "image", r"^noise is 'image', but no image is given"),
         ("time", 5.0, r"^time is 5.0; expected 0 to 2"),
+        ("time", "2002-01-05", r"^time is '2002-01-05'; expected a number, because the times"),
+        ("time", None, r"^time is None; expected a number"),
         ("camera", {"zoom": 2}, r"^camera is {'zoom': 2}; expected a mapping with some of"),
         (
             "camera",
@@ -113,6 +116,16 @@ def test_what_does_not_fit_is_refused_on_both_sides(
     assert getattr(widget, name) == was
     assert set(told) == {name}  # set back there
     assert widget.settings.strength == 0.25  # and what fits is taken
+
+
+@pytest.mark.parametrize("value", ["2002-01-02", np.datetime64("2002-01-02"), 86_400, "last"])
+def test_time_is_set_as_in_a_plotter(make: Make, value: Any) -> None:
+    steady = gyre(1)
+    times = np.array(["2002-01-01", "2002-01-02"], dtype="datetime64[s]")
+    velocity = np.concatenate([steady.velocity, steady.velocity])
+    widget = make(flowtex.FlowField.from_arrays(steady.points, velocity, times=times))
+    widget.time = value
+    assert widget.time == widget.scene.time == 86_400.0
 
 
 def test_a_camera_is_changed_by_parts(make: Make) -> None:
@@ -250,6 +263,32 @@ def test_an_error_while_tracing_is_told(
     told = [m["text"] for m in heard.messages if m["kind"] == "error"]
     assert told == ["MemoryError: out of memory"]
     assert "out of memory" in capsys.readouterr().err
+
+
+def test_an_error_is_not_told_while_the_interpreter_ends(
+    make: Make, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Threads still run then, but libraries refuse their work."""
+    widget = make()
+    heard = Heard(widget, monkeypatch)
+    heard.settle()
+    refused = threading.Event()
+
+    def refuse() -> None:
+        refused.set()
+        msg = "cannot schedule new futures after shutdown"
+        raise RuntimeError(msg)
+
+    monkeypatch.setattr(widget._views[0], "data", refuse)
+    ended = SimpleNamespace(main_thread=threading.Thread, Event=threading.Event)
+    monkeypatch.setattr(feed, "threading", ended)
+    widget.parameter = "time"
+    assert refused.wait(PATIENCE_S)
+    for thread in threading.enumerate():
+        if thread.name == "flowtex-build":
+            thread.join(PATIENCE_S)
+    assert not any(m["kind"] == "error" for m in heard.messages)
+    assert capsys.readouterr().err == ""
 
 
 @pytest.mark.threads
