@@ -84,17 +84,22 @@ def map_lines(
     middles, reach = _cells(field)
     tree = scipy.spatial.cKDTree(middles)
 
-    def in_cells(lines: MapLines) -> MapLines:
+    def are_in_cells(lines: MapLines) -> Bools:
         distances, nearest = tree.query(lines.points)
         # A point of the graticule may be a node, whose distance is the reach, up to rounding.
-        return lines.within(distances <= (1 + 1e-6) * reach[nearest])
+        return np.asarray(distances <= (1 + 1e-6) * reach[nearest])
 
-    fine_graticule = in_cells(graticule(projection, box))
+    fine = graticule(projection, box)
+    fine_graticule = fine.within(are_in_cells(fine))
     if not has_globe:
-        cut_coasts = in_cells(coastlines(projection, box, coast))
+        coasts = coastlines(projection, box, coast)
+        cut_coasts = coasts.within(are_in_cells(coasts))
         return {"coastlines": cut_coasts, "graticule": fine_graticule}
-    whole = coastlines(projection, coast=coast)
-    return {"coastlines": whole, "graticule": graticule(projection).and_(fine_graticule)}
+    whole = graticule(projection)
+    # A line of both would be drawn twice, and darker.
+    around = whole.within(~are_in_cells(whole))
+    coasts = coastlines(projection, coast=coast)
+    return {"coastlines": coasts, "graticule": around.and_(fine_graticule)}
 
 
 def ground_cells(field: FlowField, *, tiled: bool = False, coast: Coast | None = None) -> Ground:

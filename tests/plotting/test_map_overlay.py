@@ -19,7 +19,7 @@ from flowtex._util.colours import rgb
 from flowtex.field.earth.projection import EARTH_RADIUS, Projection
 from flowtex.plotting import component  # noqa: F401  which PyVista finds by its entry point
 from flowtex.rendering.camera import Camera, apply_camera, read_camera
-from flowtex.rendering.map_overlay import globe_radius, ground_cells
+from flowtex.rendering.map_overlay import globe_radius, ground_cells, map_lines
 from flowtex.scene.options import LAND_COLOR
 
 pytestmark = [
@@ -145,6 +145,27 @@ def test_a_globe_is_below_what_does_not_cover_the_earth() -> None:
     assert globe_radius(ocean("lambert")) is None
     radius = globe_radius(ocean("globe"))
     assert radius is not None and 0.999 * EARTH_RADIUS < radius < EARTH_RADIUS
+
+
+def test_no_meridian_is_drawn_twice_where_a_field_has_finer_ones() -> None:
+    projection = Projection("globe")
+    lon, lat = np.meshgrid(np.arange(5.0, 56.0), np.arange(-25.0, 26.0))
+    one = np.ones(lon.shape)
+    field = flowtex.FlowField.from_arrays(
+        projection.positions(lon, lat),
+        projection.vectors(lon, lat, one, one),
+        projection=projection,
+    )
+    lengths = []
+    for has_globe in (False, True):
+        lines = map_lines(field, has_globe=has_globe)["graticule"]
+        first = np.delete(np.arange(len(lines.points)), lines.starts[1:] - 1)
+        ends = lines.points[first], lines.points[first + 1]
+        x, y = projection.lonlat((ends[0] + ends[1]) / 2)
+        inside = (lon.min() + 1 < x) & (x < lon.max() - 1)
+        inside &= (lat.min() + 1 < y) & (y < lat.max() - 1)
+        lengths.append(np.linalg.norm(ends[1] - ends[0], axis=-1)[inside].sum())
+    assert lengths[1] == pytest.approx(lengths[0]) and lengths[0] > 0
 
 
 @pytest.mark.parametrize("name", ["globe", "lambert"])
