@@ -96,7 +96,7 @@ def along(tile: Tile, i: Floats, j: Floats, axis: int) -> Floats:
     h = 1e-4
     steps = ((h, 0.0), (0.0, h))[axis]
     ahead = tile.at(i + steps[0], j + steps[1]) - tile.at(i - steps[0], j - steps[1])
-    return ahead / np.linalg.norm(ahead, axis=-1, keepdims=True)
+    return np.asarray(ahead / np.linalg.norm(ahead, axis=-1, keepdims=True))
 
 
 def llc(n: int = 12, *, angles: bool = False, face: str = "face") -> xr.Dataset:

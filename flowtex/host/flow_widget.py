@@ -208,7 +208,7 @@ class FlowWidget(AppearanceAttributes, SettingTraits, Displayed):
     _shaders: Any = traitlets.List([{}, {}]).tag(sync=True)
     _key = traitlets.Unicode().tag(sync=True)
     camera = CheckedTrait(_camera).tag(echo_update=False)
-    #: A number, or what :meth:`_check_time` makes one of.
+    #: A number, or a date until it is checked.
     time = traitlets.Union([traitlets.Float(0.0), traitlets.Instance(object)]).tag(
         sync=True, echo_update=False
     )

@@ -52,8 +52,8 @@ def _mirrored(last: Floats, step: Floats, length: Floats, known: Indices) -> Ind
     tree = scipy.spatial.cKDTree(last[known])
     pairs = []
     for target, most in ((last, SAME_NODE), (last + step, NEAR / 2)):
-        distance, near = tree.query(target[known], k=2)
-        other = known[np.asarray(near)]
+        distance, near = map(np.asarray, tree.query(target[known], k=2))
+        other = known[near]
         # A node on the fold is its own nearest neighbour, and the second one is its copy.
         number = (other[:, 0] == known).astype(int)
         rows = np.arange(len(known))

@@ -284,9 +284,10 @@ def _borders(last: Floats, before: Floats, p: Floats) -> tuple[Indices, Indices,
     numbers = np.concatenate([np.argwhere(part) for part in known])
     step = last - before
     target = last + step
-    sought = np.isfinite(target).all(axis=-1)
+    sought: Bools = np.asarray(np.isfinite(target).all(axis=-1))
     tree = scipy.spatial.cKDTree(cells)
-    distance, near = tree.query(np.where(sought[..., None], target, 0.0), k=2)
+    places = np.where(sought[..., None], target, 0.0)
+    distance, near = map(np.asarray, tree.query(places, k=2))
     # A corner is in the first column and in the first row: the flow goes on along one of them.
     steps = step[..., None, :]
     length = np.linalg.norm(step, axis=-1, keepdims=True)

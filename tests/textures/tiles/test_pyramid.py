@@ -219,11 +219,12 @@ def test_paths_over_a_pole_need_not_all_of_a_long_ring(monkeypatch: pytest.Monke
 @pytest.mark.parametrize("holes", [False, True])
 def test_averages_are_those_of_the_nine_nodes_around(closed: bool, holes: bool) -> None:
     rng = np.random.default_rng(0)
-    velocity = rng.normal(size=(601, 13, 2))
-    valid = np.ones(velocity.shape[:2], dtype=bool)
+    shape = (601, 13)
+    velocity = rng.normal(size=(*shape, 2))
+    valid = np.ones(shape, dtype=bool)
     if holes:
-        valid = rng.random(valid.shape) > 0.4
-    lines = [beside(level_lines(n, 1), n, closed=closed) for n in valid.shape]
+        valid = rng.random(shape) > 0.4
+    lines = [beside(level_lines(n, 1), n, closed=closed) for n in shape]
     found = averaged(velocity, valid, *lines)
     weights = np.array([1, 2, 1]) / 4
     for j, i in [(0, 0), (150, 3), (300, 6), (129, 5)]:
