@@ -24,7 +24,7 @@ from flowtex.cli.options import (
     pixels,
 )
 from flowtex.examples import NAMES
-from flowtex.field.earth.projection import GLOBE
+from flowtex.field.earth.projection import GLOBE, map_name
 from flowtex.field.formula.make import KNOWN
 from flowtex.field.options import OF_EARTH, OF_UNITS
 
@@ -183,7 +183,7 @@ def _part_of(library: Library, choice: dict[str, Any]) -> dict[str, Any] | None:
         if plane is None or "plane" in choice:
             return None
         part["plane"] = plane
-    projection = str(part.pop("projection", ""))
+    projection = map_name(str(part.pop("projection", "")))
     if part.pop("globe", False):
         projection = projection or GLOBE
     if projection:

@@ -70,11 +70,11 @@ class FieldOptions:
     )
     sign_free: bool | None = option(None, "Whether v and -v mean the same, as in a field of axes.")
     preference: str | None = option(None, 'Of two arrays of a name, ``"point"`` or ``"cell"``.')
-    projection: str | None = option(
+    projection: Any | None = option(
         None,
         "Map of data of the Earth: ``platecarree``, ``mercator``, ``north``, ``south``, "
-        "``lambert``, ``robinson``, ``equalearth``, ``globe``, or a PROJ string; by default one "
-        "that suits the region.",
+        "``lambert``, ``robinson``, ``equalearth``, ``globe``, a PROJ string, or a projection of "
+        "pyproj or cartopy; by default one that suits the region.",
     )
     globe: bool | None = option(None, "Whether data of the Earth are drawn on a globe.")
     level: float | str | None = option(

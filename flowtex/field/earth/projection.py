@@ -7,13 +7,16 @@ Earth moves along the map of its path; on a globe directions and lengths are tho
 from __future__ import annotations
 
 import math
+import re
 from contextlib import suppress
 from dataclasses import dataclass
 from functools import cached_property, partial
+from numbers import Integral
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from flowtex._util.arguments import brief
 from flowtex._util.array_types import Bools, Floats
 from flowtex._util.arrays import dot
 from flowtex.errors import FieldError, import_extra
@@ -34,6 +37,11 @@ NAMES = {
     "robinson": "+proj=robin",
     "equalearth": "+proj=eqearth",
 }
+#: What an error expects of a projection.
+EXPECTED = (
+    f"one of {', '.join((GLOBE, *NAMES))}, or a PROJ string of one in metres, such as 'EPSG:3413' "
+    "or '+proj=laea +lat_0=52 +lon_0=10'"
+)
 #: Names of the same maps by PROJ's methods.
 METHODS = {
     "Equidistant Cylindrical": "platecarree",
@@ -58,6 +66,70 @@ MOST_SHEARED_AT_LINE = 1e9
 POLAR = 2.0
 #: Difference of two steps along a parallel, as a share of both, up to which it is a line.
 STRAIGHT = 1e-4
+
+
+def map_name(wanted: Any) -> str:
+    """Return the name or the PROJ definition of a map, as :class:`Projection` takes it.
+
+    Parameters
+    ----------
+    wanted
+        A name in any case, a PROJ definition, an EPSG code, or a projection of pyproj or cartopy.
+
+    Raises
+    ------
+    FieldError
+        When it is something else.
+
+    Examples
+    --------
+    >>> from flowtex.field.earth.projection import map_name
+    >>> map_name("Robinson"), map_name(3413)
+    ('robinson', 'EPSG:3413')
+    """
+    if isinstance(wanted, str):
+        name = wanted.strip()
+        if name.isdecimal():
+            return f"EPSG:{name}"
+        if name.lower() in (GLOBE, *NAMES):
+            return name.lower()
+        return name
+    if isinstance(wanted, Integral) and not isinstance(wanted, bool):
+        return f"EPSG:{wanted}"
+    if is_cartopy(wanted):
+        return cartopy_map(wanted)
+    if hasattr(wanted, "to_wkt"):  # pyproj's, and what rasterio and geopandas return
+        pyproj = import_extra("pyproj", "xarray")
+        return str(pyproj.CRS.from_user_input(wanted).to_string())
+    raise FieldError(f"projection is {brief(wanted)}; expected {EXPECTED}")
+
+
+def is_cartopy(projection: Any) -> bool:
+    """Return whether a projection is one of cartopy."""
+    return hasattr(projection, "proj4_init")
+
+
+def cartopy_map(projection: Any) -> str:
+    """Return the PROJ definition of a projection of cartopy; one in degrees is taken in metres."""
+    text = str(projection.proj4_init)
+    if projection.is_projected:
+        return text
+    middle = re.search(r"\+pm=(\S+)", text)
+    text = re.sub(r"\+(pm|a|ellps|to_meter)=\S+ ?", "", text)
+    text = re.sub(r"proj=lat ?long?|proj=longlat", "proj=eqc", text)
+    if middle:
+        text += f" +lon_0={middle[1]}"
+    return f"{text} +R={EARTH_RADIUS:.12g}"
+
+
+def _fault_of(crs: CRS) -> str:
+    """Return why a coordinate system of PROJ is no map in metres; empty if it is one."""
+    if not crs.is_projected:
+        return "in degrees"
+    for axis in crs.axis_info[:2]:
+        if axis.unit_conversion_factor != 1.0:
+            return f"in units of {axis.unit_name}"
+    return ""
 
 
 @dataclass(frozen=True)
@@ -163,15 +235,13 @@ class Projection:
                 if parallels[0] * parallels[1] <= 0:
                     parallels = (near, near)
                 text += f" +lat_0={near:.12g} +lat_1={parallels[0]:.12g} +lat_2={parallels[1]:.12g}"
+        fault = "unknown"
         with suppress(pyproj.exceptions.ProjError):
             crs: CRS = pyproj.CRS.from_user_input(text)
-            if crs.is_projected:
+            fault = _fault_of(crs)
+            if not fault:
                 return crs
-        raise FieldError(
-            f"the projection {self.name!r} is unknown, or in degrees; expected one of "
-            f"{', '.join((GLOBE, *NAMES))}, or a PROJ string of one in metres, such as "
-            "'EPSG:3413' or '+proj=laea +lat_0=52 +lon_0=10'"
-        )
+        raise FieldError(f"the projection {self.name!r} is {fault}; expected {EXPECTED}")
 
     @cached_property
     def _transform(self) -> Transformer:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import re
 from collections.abc import Callable
 from dataclasses import replace
 from functools import lru_cache
@@ -22,7 +21,7 @@ from flowtex.field import FlowField
 from flowtex.field.derived.kinds import DERIVED
 from flowtex.field.derived.quantities import derived_unit
 from flowtex.field.earth.map_lines import MOST_LINES, STEPS
-from flowtex.field.earth.projection import DEGREE, EARTH_RADIUS, Projection
+from flowtex.field.earth.projection import DEGREE, Projection, cartopy_map, is_cartopy
 from flowtex.field.scalars import Scalars
 from flowtex.field.steps import LazySteps
 from flowtex.scene.options import SPEED
@@ -49,7 +48,7 @@ DegreeText = Callable[..., str]  #: Writes degrees.
 
 def is_geo(ax: Axes) -> bool:
     """Return whether axes are cartopy's."""
-    return hasattr(ax, "projection") and hasattr(ax.projection, "proj4_init")
+    return hasattr(ax, "projection") and is_cartopy(ax.projection)
 
 
 def projection_of_axes(ax: Any) -> tuple[str, Affine2D]:
@@ -57,15 +56,10 @@ def projection_of_axes(ax: Any) -> tuple[str, Affine2D]:
 
     Axes in degrees show a plate carrée in metres.
     """
-    text = str(ax.projection.proj4_init)
-    if ax.projection.is_projected:
-        return text, Affine2D()
-    middle = re.search(r"\+pm=(\S+)", text)
-    text = re.sub(r"\+(pm|a|ellps|to_meter)=\S+ ?", "", text)
-    text = re.sub(r"proj=lat ?long?|proj=longlat", "proj=eqc", text)
-    if middle:
-        text += f" +lon_0={middle[1]}"
-    return f"{text} +R={EARTH_RADIUS:.12g}", Affine2D().scale(DEGREE)
+    unit = Affine2D()
+    if not ax.projection.is_projected:
+        unit = unit.scale(DEGREE)
+    return cartopy_map(ax.projection), unit
 
 
 def unit_of(projection: Projection | None) -> Affine2D:

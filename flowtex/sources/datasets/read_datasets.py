@@ -22,7 +22,7 @@ from flowtex._util.arrays import is_nonzero
 from flowtex.errors import FieldError
 from flowtex.field import units
 from flowtex.field.dates import as_seconds
-from flowtex.field.earth.projection import GLOBE
+from flowtex.field.earth.projection import GLOBE, map_name
 from flowtex.field.field_arrays import GridArrays, SourceArrays, TriangleArrays
 from flowtex.field.options import OF_MESHES, FieldOptions
 from flowtex.field.steps import LazySteps, examined_steps
@@ -150,11 +150,14 @@ def _check_direction(options: FieldOptions) -> None:
 
 def _projection(options: FieldOptions) -> str | None:
     """Return the name of the map, or of the globe; ``None`` if none is named."""
+    name = None
+    if options.projection is not None:
+        name = map_name(options.projection)
     if not options.globe:
-        return options.projection
-    if options.projection not in (None, GLOBE):
+        return name
+    if name not in (None, GLOBE):
         raise FieldError(
-            f"globe=True and projection={options.projection!r} are given; omit one of them"
+            f"globe=True and projection={brief(options.projection)} are given; omit one of them"
         )
     return GLOBE
 

@@ -9,7 +9,8 @@ from hypothesis import strategies as st
 from strategies import property_test
 
 from flowtex._util.array_types import Floats
-from flowtex.field.earth.projection import EARTH_RADIUS, Projection
+from flowtex.errors import FieldError
+from flowtex.field.earth.projection import EARTH_RADIUS, Projection, map_name
 
 CENTER = (10.0, 50.0)
 #: Latitudes that each projection shows without going to infinity.
@@ -107,3 +108,46 @@ def test_the_scale_is_that_of_the_map() -> None:
         assert mercator.scales(*mercator.lonlat(place)) == pytest.approx(
             1 / np.cos(np.radians(lat)), rel=1e-5
         )
+
+
+def test_names_in_any_case_and_codes_are_maps() -> None:
+    assert map_name("Robinson") == "robinson"
+    assert map_name("PlateCarree") == "platecarree"
+    assert map_name(" Globe ") == "globe"
+    assert map_name(3413) == map_name("3413") == "EPSG:3413"
+    assert map_name("+proj=moll") == "+proj=moll"
+
+
+def test_projections_of_pyproj_and_cartopy_are_maps() -> None:
+    pyproj = pytest.importorskip("pyproj")
+    ccrs = pytest.importorskip("cartopy.crs")
+    polar = Projection(map_name(pyproj.CRS("EPSG:3413")))
+    expected = pyproj.Transformer.from_crs("EPSG:4326", "EPSG:3413", always_xy=True)
+    assert polar.positions(np.array(12.0), np.array(78.0))[:2] == pytest.approx(
+        expected.transform(12.0, 78.0)
+    )
+
+    crs = ccrs.Mollweide(central_longitude=30)
+    own = Projection(map_name(crs))
+    place = crs.transform_point(12.0, 48.0, ccrs.Geodetic())
+    assert own.positions(np.array(12.0), np.array(48.0))[:2] == pytest.approx(place, rel=1e-6)
+
+    # Cartopy's plate carree has degrees, flowtex's metres.
+    flat = Projection(map_name(ccrs.PlateCarree(central_longitude=30)))
+    metres = np.radians([12.0 - 30.0, 48.0]) * EARTH_RADIUS
+    assert flat.positions(np.array(12.0), np.array(48.0))[:2] == pytest.approx(metres)
+
+
+@pytest.mark.parametrize(
+    ("wanted", "message"),
+    [
+        (True, "projection is True; expected one of globe"),
+        (1.5, "projection is 1.5; expected one of globe"),
+        ("EPSG:4326", "'EPSG:4326' is in degrees; expected one of globe"),
+        ("EPSG:2263", "'EPSG:2263' is in units of US survey foot; expected one of globe"),
+        ("nowhere", "'nowhere' is unknown; expected one of globe"),
+    ],
+)
+def test_other_projections_are_refused(wanted: object, message: str) -> None:
+    with pytest.raises(FieldError, match=message):
+        Projection(map_name(wanted))
