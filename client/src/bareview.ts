@@ -165,7 +165,7 @@ export class BareView extends SceneView {
   ratio = 1;
   private readonly host: BareHost;
   /** Whether nothing has been drawn yet of the picture that is wanted. */
-  private isNew = true;
+  isNew = true;
 
   constructor(host: BareHost, { header, settings, player, source, isComing }: Shared) {
     super();

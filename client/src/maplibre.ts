@@ -272,8 +272,7 @@ export class FlowtexLayer implements CustomLayerInterface {
   private async pointClose(place: Vector): Promise<FlowPoint | null> {
     const { scene } = this;
     if (!scene) return null;
-    let isPainted = false;
-    const host = { ...this.hostOf(() => null), painted: () => void (isPainted = true), advanced: () => undefined };
+    const host = { ...this.hostOf(() => null), painted: () => undefined, advanced: () => undefined };
     const view = await (this.close ??= scene.make(host, (made) => made.requests.open()));
     const { box } = scene.mercator;
     const { pyramid, geometry } = scene.header;
@@ -282,7 +281,7 @@ export class FlowtexLayer implements CustomLayerInterface {
     const state = { up: [0, 1, 0], view_angle: 30, position: [x, y, z + half], focal_point: place, parallel: true, parallel_scale: half };
     view.isVisible = true;
     view.look(state, CLOSE_PIXELS, CLOSE_PIXELS, 1);
-    await until(() => isPainted && view.painter.canPick && !view.tiles?.pending && !view.tiles?.missing.length);
+    await until(() => !view.isNew && view.painter.canPick && !view.tiles?.pending && !view.tiles?.missing.length);
     view.isVisible = false;
     return this.pointIn(view, place);
   }

@@ -1291,11 +1291,11 @@ pointClose(n)).catch(()=>null);let i=await this.asked;return i&&{...i,path:o?.pa
 settings:s}=e,{mercator:o}=this.scene??{},i=r?.project(t)??[2,2],c=Math.max(...i.map(Math.abs))>1?null:e.find(i[0],i[1]),
 l=e.painter.shown;if(!o||!r||!c||!l)return null;let h=c.point.position,u={scene:c.layer.scene,moment:l,place:c.place,position:h},
 [m,p]=ws(u,n.get("lonlat"))??[NaN,NaN],{path:f}=bs(u,s,r,e.rows);return{eastward:m,northward:p,values:c.point.values,path:f.
-map(d=>o.lngLatOf(d))}}async pointClose(e){let{scene:t}=this;if(!t)return null;let r=!1,n={...this.hostOf(()=>null),painted:()=>{
-r=!0},advanced:()=>{}},s=await(this.close??=t.make(n,f=>f.requests.open())),{box:o}=t.mercator,{pyramid:i,geometry:c}=t.
-header,l=Zc*(o[2]-o[0])/(i?.shapes[0]??c.shape)[1],[h,u,m]=e,p={up:[0,1,0],view_angle:30,position:[h,u,m+l],focal_point:e,
-parallel:!0,parallel_scale:l};return s.isVisible=!0,s.look(p,Va,Va,1),await Ha(()=>r&&s.painter.canPick&&!s.tiles?.pending&&
-!s.tiles?.missing.length),s.isVisible=!1,this.pointIn(s,e)}failed(e,t){this.map?.fire("error",{error:new Error([e,t].filter(
+map(d=>o.lngLatOf(d))}}async pointClose(e){let{scene:t}=this;if(!t)return null;let r={...this.hostOf(()=>null),painted:()=>{},
+advanced:()=>{}},n=await(this.close??=t.make(r,p=>p.requests.open())),{box:s}=t.mercator,{pyramid:o,geometry:i}=t.header,
+c=Zc*(s[2]-s[0])/(o?.shapes[0]??i.shape)[1],[l,h,u]=e,m={up:[0,1,0],view_angle:30,position:[l,h,u+c],focal_point:e,parallel:!0,
+parallel_scale:c};return n.isVisible=!0,n.look(m,Va,Va,1),await Ha(()=>!n.isNew&&n.painter.canPick&&!n.tiles?.pending&&!n.
+tiles?.missing.length),n.isVisible=!1,this.pointIn(n,e)}failed(e,t){this.map?.fire("error",{error:new Error([e,t].filter(
 Boolean).join(" "))})}render(e,t){let{map:r,scene:n,programs:s,array:o,opacity:i}=this;if(!r||!n||!s)return;let c=t.defaultProjectionData.
 projectionTransition>0;this.follow(r,n,c);let[l,h]=[r.getZoom(),r.getCenter()],u=this.pictures.filter(({isUsed:d})=>d),{
 shaderData:m,getProjectionData:p}=t,f={gl:e,programs:s,array:o,shaderData:m,getProjectionData:p,zoom:l,center:h,globe:c,
