@@ -118,13 +118,13 @@ def component_units(pair: Pair, record: Record) -> tuple[str, tuple[float, float
         When the units of the components cannot be converted to each other, or are no units of
         velocity.
     """
-    given = select.velocity_unit(pair.u, any_kind=pair.named)
+    given = _unit_of(pair, pair.u)
     number, one = units.without_number(given)
     if number != 1.0:
         record("units", f"{pair.u.name} converted from {given} to {one}")
     if pair.kind in directions.ANGULAR:
         return one, (number, _angle_factor(pair, record))
-    other = select.velocity_unit(pair.v, any_kind=pair.named)
+    other = _unit_of(pair, pair.v)
     if not one or not other:
         if one != other:
             if one:
@@ -145,6 +145,18 @@ def component_units(pair: Pair, record: Record) -> tuple[str, tuple[float, float
     if factor != 1.0:
         record("units", f"{pair.v.name} converted from {other} to {one}")
     return one, (number, factor)
+
+
+def _unit_of(pair: Pair, array: xr.DataArray) -> str:
+    """Return the unit of a component; that of a pair which the user names may be any."""
+    try:
+        return select.velocity_unit(array, any_kind=pair.named)
+    except FieldError as error:
+        u, v = pair.parts
+        unit = str(array.attrs["units"])
+        raise FieldError(
+            f'{error}. Otherwise u="{u}", v="{v}" draws them in {unit}, as a displacement'
+        ) from None
 
 
 def _angle_factor(pair: Pair, record: Record) -> float:

@@ -48,8 +48,16 @@ FIRST_OF = {second: first for first, second in PARTNERS.items()}
 EARTH = ("eastward", "zonal", "east")
 #: Preferred names when a dataset has several velocities.
 MAIN = ("sea_water_velocity", "sea_water_x_velocity", "wind", "x_wind")
+#: The standard name of variables that have none, as cfgrib writes it.
+UNKNOWN = "unknown"
 #: Words of velocities.
 MOVING = re.compile(r"velocity|wind|current|drift|momentum_component")
+#: Words of the errors and the spread of a velocity, which are no velocity.
+SPREAD = re.compile(
+    r"(^|_)(err|errors?|uncert|uncertainty|stde?v?|stddev|standard_deviation|variance)(_|$)"
+)
+#: Names of a velocity and the letter of its first component, as in ux and vx.
+WITH_LETTER = re.compile(r"^[uv]x\d*m?$")
 #: Names that are a velocity even where nothing else says so, without the letter of the component.
 BARE = re.compile(
     r"^(|o|a|bar|vel|velocity|wind|wnd|cur|curr|current|grd|as|gos|water|component|"
@@ -99,6 +107,7 @@ class Pair:
     #: Whether the second component was exchanged with the first, as it is along the columns.
     swapped: bool = False
     guessed: bool = False  #: Whether the reason is a choice that a notice should report.
+    words: frozenset[str] = frozenset()  #: Words of the attribute that says what it is.
 
     def __str__(self) -> str:
         return f"{', '.join(self.parts)} ({self.why})"
@@ -149,11 +158,19 @@ def choose_pair(
         # The velocity of a model has levels, unlike wind or a depth mean; and it may also have
         # components along the axes of space besides those along the Earth.
         likely = [pair for pair in likely if _preference(pair) == _preference(likely[0])]
-    if len(likely) > 1:
-        text = f"several pairs of variables may be the velocity: {'; '.join(map(str, pairs))}. Name"
-        first = likely[0]
+    first = likely[0]
+    if not _is_plainest(first, likely[1:]):
+        listed = "; ".join(
+            str(pair) for pair in pairs if pair.rank <= max(first.rank, LEAST_LIKELY)
+        )
+        text = f"several pairs of variables may be the velocity: {listed}. Name"
         raise FieldError(f'{text} one of them, as in u="{first.u.name}", v="{first.v.name}"')
-    return likely[0]
+    return first
+
+
+def _is_plainest(pair: Pair, others: Sequence[Pair]) -> bool:
+    """Return whether the attributes of all others have all words of a pair, and further ones."""
+    return all(pair.words and pair.words < other.words for other in others)
 
 
 def _with_direction(datasets: Sequence[xr.Dataset], speed: str | None, direction: str) -> Pair:
@@ -256,7 +273,7 @@ def find_pairs(datasets: Sequence[xr.Dataset]) -> list[Pair]:
                 arrays.append(array)
     for partners in (PARTNERS, SECTION_PARTNERS):
         if pairs := _cartesian(arrays, partners):
-            return sorted(pairs, key=_preference)
+            return sorted(pairs, key=_order)
     return [*_speeds(arrays), *_curved(arrays), *_as_coordinates(arrays)]
 
 
@@ -283,9 +300,13 @@ def _cartesian(arrays: Sequence[xr.DataArray], partners: Mapping[str, str]) -> l
         for word, rest, partner in _partners(_text(u, source), source, partners):
             why = f"{source.replace('_', ' ')} with {word!r} and {partners[word]!r}"
             rank = _rank(u, source, rest)
+            words: frozenset[str] = frozenset()
+            if source != "name":
+                words = frozenset(_text(u, source).split("_"))
             for v in arrays if rank is not None else ():
                 if _text(v, source) == partner and _match(u, v) and not _crossed(u, v, arrays):
-                    pairs.setdefault((u.name, v.name), Pair(u, v, _directions(u), why, rank or 0))
+                    pair = Pair(u, v, _directions(u), why, rank or 0, words=words)
+                    pairs.setdefault((u.name, v.name), pair)
     return list(pairs.values())
 
 
@@ -316,14 +337,29 @@ def _turns(speed: xr.DataArray, turn: xr.DataArray) -> bool:
     if MAGNITUDES.search(_standard(speed)) and ANGLES.search(named):
         return True
     first = ""
-    if "standard_name" in speed.attrs:
+    if speed.attrs.get("standard_name", UNKNOWN) != UNKNOWN:
         first = re.sub(r"_?speed$", "", _standard(speed))
     return bool(TURNS.search(named)) and named.startswith(first)
 
 
 def _standard(array: xr.DataArray) -> str:
-    """Return a standard name, or else a name, with underscores between its words."""
-    name = str(array.attrs.get("standard_name", array.name))
+    """Return a standard name, or else a name, with underscores between its words.
+
+    A long name has its place where it says more than the name, as of ``si10`` of GRIB.
+    """
+    name = str(array.attrs.get("standard_name", UNKNOWN))
+    if name != UNKNOWN:
+        return _parted(name)
+    name = _parted(str(array.name))
+    if SPEEDS.search(name) or TURNS.search(name):
+        return name
+    described = _text(array, "long_name")
+    if SPEEDS.search(described) or TURNS.search(described):
+        return described
+    return name
+
+
+def _parted(name: str) -> str:
     return re.sub(r"(?<=[a-z0-9])(?=[A-Z][a-z])", "_", name)
 
 
@@ -378,6 +414,11 @@ def other_velocities(datasets: Sequence[xr.Dataset], drawn: Pair) -> Iterator[tu
 
 def _preference(pair: Pair) -> tuple[int, int, bool]:
     return pair.rank, -pair.u.ndim, pair.along != "earth"
+
+
+def _order(pair: Pair) -> tuple[tuple[int, int, bool], int]:
+    """Return what sorts pairs: the likely ones first, and of these those with few words."""
+    return _preference(pair), len(pair.words)
 
 
 def velocity_unit(array: xr.DataArray, *, any_kind: bool = False) -> str:
@@ -482,6 +523,8 @@ def _name_partners(name: str, partners: Mapping[str, str]) -> set[str]:
 
 def _rank(u: xr.DataArray, source: str, rest: str) -> int | None:
     """Return the rank of a pair, 0 for the most likely velocity; ``None`` for other variables."""
+    if any(SPREAD.search(_text(u, name)) for name in NAMES):
+        return None
     is_velocity = _is_velocity(u)
     if is_velocity is False:
         if source == "standard_name":
@@ -489,7 +532,7 @@ def _rank(u: xr.DataArray, source: str, rest: str) -> int | None:
         return None
     text = _text(u, source)
     if source != "name":
-        plain = re.sub(r"_*(eastward|zonal)_*", "_", text).strip("_")
+        plain = re.sub(r"^x_|_*(eastward|zonal)_*", "_", text).strip("_")
         if plain in MAIN:
             return 0
         if MOVING.search(text):
@@ -497,8 +540,9 @@ def _rank(u: xr.DataArray, source: str, rest: str) -> int | None:
         if is_velocity:
             return 4
         return None
-    bare = BARE.match(rest) is not None
-    if not bare and not is_velocity:
+    bare = BARE.match(rest) is not None or WITH_LETTER.match(text) is not None
+    is_place = text in ("x", "y", "z")
+    if not is_velocity and (is_place or not bare):
         return None
     if not rest and bare:
         return 2
