@@ -31,11 +31,11 @@ if TYPE_CHECKING:
     import xarray as xr
 
 LONGITUDE = re.compile(
-    r"^(nav_lon|(.*_)?lon(gitude)?(_\w+)?|lon[a-z]?|[cev]lon|xlong.*|glam\w?|geolon\w*|[tu]long|xc|xg)$",
+    r"^(nav_lon|(.*_)?lon(gitude)?(_\w+)?|lon[a-z]?|lon(cell|node|vertex|edge)|[cev]lon|xlong.*|glam\w?|geolon\w*|[tu]long|xc|xg)$",
     re.I,
 )
 LATITUDE = re.compile(
-    r"^(nav_lat|(.*_)?lat(itude)?(_\w+)?|lat[a-z]?|[cev]lat|xlat.*|gphi\w?|geolat\w*|[tu]lat|yc|yg)$",
+    r"^(nav_lat|(.*_)?lat(itude)?(_\w+)?|lat[a-z]?|lat(cell|node|vertex|edge)|[cev]lat|xlat.*|gphi\w?|geolat\w*|[tu]lat|yc|yg)$",
     re.I,
 )
 #: Words before the letter of a coordinate, as in ``node_x``, ``FlowElem_xcc`` and ``pos_y``.
@@ -49,6 +49,11 @@ ACROSS = re.compile(
 UPWARD = re.compile(
     rf"^(y|y_?c|y_?g|y_\w+|yp1|rlat|projection_y_coordinate|{OF_POINTS.format('y')})$", re.I
 )
+#: Words of long names, and standard names, by the axis of a coordinate in the plane.
+DESCRIBED = {
+    "X": (re.compile(r"\bx[- ]coordinates?\b", re.I), "projection_x_coordinate"),
+    "Y": (re.compile(r"\by[- ]coordinates?\b", re.I), "projection_y_coordinate"),
+}
 #: Letters for the place in a cell of a staggered grid: its middle first.
 MIDDLES = ("rho", "t", "c", "r", "")
 #: Parts of the names of two coordinates that belong together.
@@ -377,7 +382,7 @@ def _pairs(
         coordinates += [array.coords[n] for n in dict.fromkeys(named) if n in array.coords]
         for ds, places, names in others:
             declared = (*places.get(word, ()), *names.get(word, ()))
-            named = [n for n in ds.variables if pattern.match(str(n))]
+            named = [n for n in ds.variables if pattern.match(str(n)) or _describes(ds[n], word)]
             coordinates += [ds[n] for n in dict.fromkeys((*declared, *named)) if n in ds.variables]
     # Those in the middle of cells come before those on their sides.
     firsts = {id(c): n for n, c in enumerate(candidates[0])}
@@ -399,6 +404,15 @@ def _pairs(
             of_axes = a.dims == (dims[1],) and b.dims == (dims[0],)
             if a.ndim == b.ndim and (of_axes or str(b.name).lower() in partners):
                 yield a, b
+
+
+def _describes(c: xr.DataArray, axis: str) -> bool:
+    """Return whether attributes say that a variable has x or y, such as "x-coordinate"."""
+    if axis not in DESCRIBED:
+        return False
+    words, name = DESCRIBED[axis]
+    is_described = words.search(str(c.attrs.get("long_name", ""))) is not None
+    return is_described or c.attrs.get("standard_name") == name
 
 
 def _at_nodes(

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from flowtex.errors import FieldError
-from flowtex.sources.datasets.axes import FACES, LEVEL, NODES, TIME, axis_kind
+from flowtex.sources.datasets.axes import FACES, LEVEL, NODES, TIME, axis_kind, horizontal_dims
 from flowtex.sources.datasets.coordinates import ACROSS, LONGITUDE, SWAPS
 from flowtex.sources.datasets.levels import LEVELS
 from flowtex.sources.datasets.select import MOVING, find_pairs
@@ -139,14 +139,23 @@ def _of_models(variables: Mapping[str, xr.DataArray]) -> Iterator[Mesh]:
 
 
 def _of_named_faces(variables: dict[str, xr.DataArray]) -> Iterator[Mesh]:
-    """Yield meshes of triangles or quadrangles whose corners only have a usual name."""
+    """Yield meshes of triangles or quadrangles whose corners have a usual name, or count nodes."""
     for x, y in position_pairs(list(variables.values())):
+        if x.ndim != 1:
+            continue
         for name, corners in variables.items():
-            if not NAMED_FACES.match(name) or corners.dtype.kind not in "iu":
-                continue
             is_table = corners.ndim == 2 and corners.shape[1] in (3, 4)
-            if is_table and x.ndim == 1 and x.dims[0] not in corners.dims:
+            if not is_table or corners.dtype.kind not in "iu" or x.dims[0] in corners.dims:
+                continue
+            if NAMED_FACES.match(name) or _counts_all(corners, x.size):
                 yield Mesh("faces", x, y, corners, first=int(corners.attrs.get("start_index", 1)))
+
+
+def _counts_all(corners: xr.DataArray, count: int) -> bool:
+    """Return whether the values are the numbers of this many nodes, from 0 or 1, and of no more."""
+    numbers = np.unique(np.asarray(values_in(corners)))
+    numbers = numbers[numbers >= 0]
+    return len(numbers) == count > 0 and int(numbers[-1] - numbers[0]) == count - 1
 
 
 def _bounded(variables: Mapping[str, xr.DataArray]) -> Iterator[Mesh]:
@@ -256,7 +265,7 @@ def with_points(datasets: Sequence[xr.Dataset]) -> list[xr.Dataset]:
             continue
         along = [a for ds in datasets for a in ds.data_vars.values() if set(x.dims) <= set(a.dims)]
         values = [a for a in along if a.dtype.kind in "fiu" and a.name not in (x.name, y.name)]
-        if not values or any(not set(x.dims) <= set(pair.u.dims) for pair in pairs):
+        if not values or any(_lie_elsewhere(x, pair.u) for pair in pairs):
             continue
         dim = next((str(d) for d in x.dims if d not in times), "")
         levels = any(axis_kind(a, str(d)) == LEVEL for a in values for d in {*a.dims} - {*x.dims})
@@ -276,6 +285,18 @@ def with_points(datasets: Sequence[xr.Dataset]) -> list[xr.Dataset]:
         if x.ndim == 1:
             return [ds.rename_dims({dim: NODES}) if dim in ds.dims else ds for ds in datasets]
     return list(datasets)
+
+
+def _lie_elsewhere(x: xr.DataArray, u: xr.DataArray) -> bool:
+    """Return whether values have other axes than positions, or a surface besides their axes.
+
+    So has a wind on a grid beside the place of a radar at each time.
+    """
+    if not {*x.dims} <= {*u.dims}:
+        return True
+    surface = {*horizontal_dims(u)}
+    kinds = {axis_kind(u, dim) for dim in surface}
+    return len(surface) == 2 and not surface & {*x.dims} and not kinds & {TIME, LEVEL}
 
 
 def points_in(variables: dict[str, xr.DataArray]) -> Iterator[Mesh]:
