@@ -33,6 +33,7 @@ from flowtex.sources.opening import component_axes, flow_text, rasters, tables
 from flowtex.sources.opening.axis_marks import time_axis, with_axes
 from flowtex.sources.opening.column_values import plain_values
 from flowtex.sources.opening.named_units import with_named_units
+from flowtex.sources.opening.packed_values import has_texts, with_numbers
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -238,6 +239,7 @@ def _decoded(ds: xr.Dataset) -> xr.Dataset:
         ds = ds.copy()
         for name, unit in named.items():
             ds[name].attrs["units"] = unit
+    ds = with_numbers(ds)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         with suppress(*UNDATED):
@@ -507,11 +509,7 @@ def open_files(path: Path) -> Datasets:
         if path.is_dir() or suffix in ZARR:
             place = _checked_zarr(path)
             options["engine"] = "zarr"
-        try:
-            ds = xarray.open_dataset(place, **options)
-        except ValueError:  # times that no calendar has stay numbers
-            options["decode_times"] = False
-            ds = xarray.open_dataset(place, **options)
+        ds = _opened(place, options)
         ds.encoding["source"] = str(path)
         if not group and any(array.ndim for array in ds.data_vars.values()):
             return Datasets([ds], _closers([ds]))
@@ -521,6 +519,22 @@ def open_files(path: Path) -> Datasets:
             raise FieldError(f"the group {group!r} does not exist; expected {groups}")
         parts = of_tree(tree[group] if group else tree, path)
         return Datasets(parts, _closers([ds, *tree.subtree]))
+
+
+def _opened(place: Any, options: dict[str, Any]) -> xr.Dataset:
+    """Open a file; the options that it needs besides are added to these."""
+    xarray = import_extra("xarray", "xarray")
+    ds: xr.Dataset
+    try:
+        ds = xarray.open_dataset(place, **options)
+    except ValueError:  # times that no calendar has stay numbers
+        options["decode_times"] = False
+        ds = xarray.open_dataset(place, **options)
+    if has_texts(ds):
+        ds.close()
+        options["mask_and_scale"] = False
+        ds = xarray.open_dataset(place, **options)
+    return ds
 
 
 def _selafin(path: Path) -> xr.Dataset:
