@@ -223,6 +223,15 @@ def horizontal_dims(array: xr.DataArray) -> tuple[str, ...]:
     return (dims[-2], dims[-1])
 
 
+def is_told(array: xr.DataArray) -> bool:
+    """Return whether attributes, names or lines tell the rows of a surface from its columns."""
+    axes = marked_axes(array)
+    known = {*axes.get("Y", ()), *axes.get("X", ())}
+    rows, columns = horizontal_dims(array)
+    is_named = ROWS.match(rows) is not None or COLUMNS.match(columns) is not None
+    return is_named or bool(known & {rows, columns}) or _placed_dims(array) is not None
+
+
 def _placed_dims(array: xr.DataArray) -> tuple[str, str] | None:
     """Return the two dimensions of longitude and latitude; ``None`` without such coordinates."""
     found = set()

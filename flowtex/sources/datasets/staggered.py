@@ -18,7 +18,7 @@ from flowtex.errors import FieldError
 from flowtex.field.earth.projection import GLOBE, Projection
 from flowtex.sources.datasets import labels
 from flowtex.sources.datasets.align import renamed
-from flowtex.sources.datasets.axes import as_slice, horizontal_dims
+from flowtex.sources.datasets.axes import as_slice, horizontal_dims, is_told
 from flowtex.sources.datasets.coordinates import Beside, Places, find_places
 from flowtex.sources.notices import Record
 from flowtex.sources.reader_errors import values_in
@@ -171,8 +171,16 @@ def _at_true_cells(
         return grid
     if places.is_line or places.is_earth != grid.places.is_earth:
         return grid
-    at = np.ix_(grid.rows.cells, grid.columns.cells)
-    return grid._replace(places=places.part(at))
+    places = places.part(np.ix_(grid.rows.cells, grid.columns.cells))
+    if not grid.places.is_line and not _are_same(grid.places, places):  # such as those of u
+        return grid
+    return grid._replace(places=places)
+
+
+def _are_same(one: Places, other: Places) -> bool:
+    """Return whether nodes lie at the same places up to a small part of a cell."""
+    offset = _offset(one, other)
+    return offset is not None and max(map(abs, offset)) < HALF
 
 
 def _cell_places(u: xr.DataArray, cells: tuple[str, str], beside: Beside) -> Places:
@@ -334,8 +342,7 @@ def lies_in(array: xr.DataArray, cells: Places, at: tuple[Any, ...], beside: Bes
         own = own.part(part)
     if own.is_earth != cells.is_earth or own.a.shape != cells.a.shape:
         return False
-    offset = _offset(cells, own)
-    return offset is not None and max(map(abs, offset)) < HALF
+    return _are_same(cells, own)
 
 
 def _source(array: xr.DataArray, datasets: Sequence[xr.Dataset]) -> xr.Dataset:
@@ -368,6 +375,11 @@ def _by_names(u: xr.DataArray, v: xr.DataArray, cells: tuple[str, str], beside: 
             f"{u.name} has {dict(u.sizes)} and {v.name} {dict(v.sizes)}; they differ by more than "
             "one along rows or columns, so they cannot be components of one staggered grid"
         )
+    if not any(map(is_told, (u, v))):
+        text = f"{u.name} is taken along {column_u} and {v.name} along {row_v}, though no name or "
+        order = ", ".join(f'"{dim}"' for dim in (column_u, column_v, row_v, row_u))
+        text += f"attribute tells; to exchange them, ds.transpose(..., {order})"
+        beside.record("align", text, notable=True)
     first_row = first_side(row_v, row_u, rows, beside.datasets)
     first_column = first_side(column_u, column_v, columns, beside.datasets)
     try:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import re
 import warnings
 from collections.abc import Hashable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
@@ -15,6 +16,8 @@ from flowtex.sources.datasets.levels import with_levels
 if TYPE_CHECKING:
     import xarray as xr
 
+#: Units of longitude and latitude in two words.
+IN_WORDS = re.compile(r"deg(?:ree)?s? (east|north)", re.IGNORECASE)
 AXES = ("X", "Y", "Z", "T")
 #: Axes whose first letters suggest other ones.
 OF_REGCM = {"iy": "Y", "jx": "X"}
@@ -31,7 +34,7 @@ ATTRIBUTES = {
 def with_axes(ds: xr.Dataset) -> xr.Dataset:
     """Return a dataset whose coordinates are marked with their axes."""
     import_extra("cf_xarray", "xarray")
-    ds = with_levels(_with_places(ds))
+    ds = with_levels(_with_places(_with_cf_degrees(ds)))
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         guessed = guess_axes(ds)
@@ -50,6 +53,20 @@ def with_axes(ds: xr.Dataset) -> xr.Dataset:
         if is_number and "axis" in c.attrs:  # which of them is across is a choice
             del c.attrs["axis"]
     return guessed
+
+
+def _with_cf_degrees(ds: xr.Dataset) -> xr.Dataset:
+    """Return a dataset with the units of CF for longitude and latitude, as of "degrees east"."""
+    found = {}
+    for name, variable in ds.variables.items():
+        match = IN_WORDS.fullmatch(str(variable.attrs.get("units", "")))
+        if match:
+            found[name] = f"degrees_{match[1].lower()}"
+    if found:
+        ds = ds.copy()
+    for name, unit in found.items():
+        ds[name].attrs["units"] = unit
+    return ds
 
 
 def _with_places(ds: xr.Dataset) -> xr.Dataset:

@@ -9,11 +9,14 @@ import declared_forms
 import grid_forms
 import label_forms
 import mesh_forms
+import model_forms
 import numpy as np
+import product_forms
 import public_forms
 import pytest
 import time_forms
 import topology_forms
+import triangle_forms
 import turned_forms
 import value_forms
 from form_table import FORMS, judge, read
@@ -28,9 +31,12 @@ MODULES = (
     grid_forms,
     label_forms,
     mesh_forms,
+    model_forms,
+    product_forms,
     public_forms,
     time_forms,
     topology_forms,
+    triangle_forms,
     turned_forms,
     value_forms,
 )
