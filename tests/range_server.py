@@ -71,6 +71,11 @@ class _Handler(BaseHTTPRequestHandler):
     def do_HEAD(self) -> None:
         self._send()
 
+    def do_PROPFIND(self) -> None:
+        server: RangeServer = self.server.range_server  # type: ignore[attr-defined]
+        server.asked.append((self.command, self.path, ""))
+        self._answer(501, b"")  # it lists no files
+
     def do_GET(self) -> None:
         self._send()
 

@@ -30,18 +30,25 @@ class UnlistedStore(WrapperStore[Store]):
         super().__init__(store)
         self._names = tuple(names) or USUAL_NAMES
         self.was_listed = True  #: Whether the server has listed its files.
+        self._found: dict[str, list[str]] = {}  # names of entries by the path of their group
 
     async def list_dir(self, prefix: str) -> AsyncIterator[str]:
         """Yield the names of the entries of a group."""
-        try:
-            names = [name async for name in self._store.list_dir(prefix)]
-        except Exception:  # each server answers in its own way
-            self.was_listed = False
-            names = await self._found(prefix)
-        for name in names:
+        if prefix not in self._found:
+            self._found[prefix] = await self._names_in(prefix)
+        for name in self._found[prefix]:
             yield name
 
-    async def _found(self, prefix: str) -> list[str]:
+    async def _names_in(self, prefix: str) -> list[str]:
+        """Return the names of the entries of a group; after one failure no list is requested."""
+        if self.was_listed:
+            try:
+                return [name async for name in self._store.list_dir(prefix)]
+            except Exception:  # each server answers in its own way
+                self.was_listed = False
+        return await self._find(prefix)
+
+    async def _find(self, prefix: str) -> list[str]:
         """Return the names of entries that exist, of those that the documents of a group name."""
         attributes = await self._attributes(prefix)
         found = []

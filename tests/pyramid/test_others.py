@@ -16,6 +16,7 @@ from flowtex import FlowField
 from flowtex.cli import main
 from flowtex.errors import FieldError, Notice
 from flowtex.pyramid import is_store, open_store
+from flowtex.pyramid.places import MOST_REPEATS
 from flowtex.pyramid.source import has_parts
 from flowtex.sources.datasets.values import Regions
 from flowtex.textures.tiles.grid_levels import level_lines
@@ -174,6 +175,9 @@ def test_store_on_a_server_without_a_list(tmp_path: Path, zarr_format: Any) -> N
         for field in fields:
             np.testing.assert_allclose(field.points, known.points)
             np.testing.assert_allclose(field.velocity[0], known.velocity[0])
+        # Each store is asked once for a list, which fails and is repeated.
+        methods = [method for method, _, _ in server.asked]
+        assert methods.count("PROPFIND") == 2 * (1 + MOST_REPEATS)
         with pytest.raises(FieldError, match=r"its server lists no files.*Name the components"):
             open_store(f"{server.address}b.zarr")
 
