@@ -14,9 +14,10 @@ pytest.importorskip("pyvista")
 from flowtex import FlowField
 from flowtex._util.child.child import FORKS
 
-#: Opens files of every suffix that PyVista knows, each in a fork, and prints those that end it.
+#: Opens files of every suffix that PyVista knows in a fork, and prints those that end it; another
+#: fork goes on with the next one.
 SCRIPT = """
-import os, signal, sys, warnings
+import os, sys, warnings
 from pathlib import Path
 from pyvista.core.utilities.reader import CLASS_READERS
 from flowtex import FlowField
@@ -24,30 +25,41 @@ from flowtex.errors import FieldError
 
 warnings.simplefilter("ignore")
 folder = Path(sys.argv[1])
-# What reading loads is loaded once, and not in each fork.
-for name in ("file.vtu", "file.nc"):
-    path = folder / name
+suffixes = sorted(CLASS_READERS)
+
+def read(suffix):
+    path = folder / f"file{suffix}"
     path.write_text(sys.argv[2])
     try:
         FlowField.from_file(path)
-    except FieldError:
-        pass
-for suffix in sorted(CLASS_READERS):
-    path = folder / f"file{suffix}"
-    path.write_text(sys.argv[2])
+    except (FieldError, ModuleNotFoundError):
+        return
+    os._exit(1)
+
+def read_all(told):
+    quiet = os.open(os.devnull, os.O_WRONLY)
+    os.dup2(quiet, 1)
+    os.dup2(quiet, 2)
+    for suffix in suffixes:
+        read(suffix)
+        os.write(told, b".")
+    os._exit(0)
+
+while suffixes:
+    told, tells = os.pipe()
     number = os.fork()
     if number == 0:
-        quiet = os.open(os.devnull, os.O_WRONLY)
-        os.dup2(quiet, 1)
-        os.dup2(quiet, 2)
         try:
-            FlowField.from_file(path)
-        except (FieldError, ModuleNotFoundError):
-            os._exit(0)
-        os._exit(1)
+            read_all(tells)
+        finally:
+            os._exit(1)
+    os.close(tells)
+    with open(told, "rb") as file:
+        done = len(file.read())
     _, status = os.waitpid(number, 0)
     if status:
-        print(suffix, os.waitstatus_to_exitcode(status), flush=True)
+        print(suffixes[done], os.waitstatus_to_exitcode(status), flush=True)
+    suffixes = suffixes[done + 1 :]
 """
 #: A quadrilateral with a velocity at its corners, as AVS UCD.
 PLATE = """4 1 3 0 0
