@@ -38,9 +38,13 @@ MEANINGS = {
     "to": "a direction to which the flow goes, clockwise from north",
 }
 
+#: Units behind the name of a speed.
+_UNITS = r"(_(kn|kts?|knots?|mps|m_?s|cm_?s|km_?h|kmph|kph|mph))?"
 #: Names of speeds.
 SPEEDS = re.compile(
-    r"^(.*_)?(speed|magnitude|mag)$|^(w|c)?(spd|spe)\d*m?$|^ws\d*m?$|^wspd\w*$", re.I
+    rf"^(.*_)?(speed|magnitude|mag){_UNITS}$|^(w|c)?(spd|spe)\d*m?{_UNITS}$|^ws\d*m?{_UNITS}$|"
+    r"^wspd\w*$",
+    re.I,
 )
 #: Names of magnitudes, beside which an angle is that of the vector.
 MAGNITUDES = re.compile(r"(^|_)mag(nitude)?$", re.I)

@@ -184,7 +184,7 @@ def _with_direction(datasets: Sequence[xr.Dataset], speed: str | None, direction
             is_beside = array.dtype.kind in "fiu" and {*array.dims} == {*turn.dims}
             if is_beside and name != direction:
                 alike.append(array)
-    speeds = [a for a in alike if SPEEDS.search(str(a.attrs.get("standard_name", a.name)))]
+    speeds = [a for a in alike if SPEEDS.search(_standard(a))]
     if len(speeds) != 1:
         found = ", ".join(str(a.name) for a in speeds or alike) or "none"
         raise FieldError(

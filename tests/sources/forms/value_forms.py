@@ -9,7 +9,19 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 from form_table import form, variants
-from known_flow import EAST, NORTH, Truth, at_points, current, earth, in_plane, lab, plane, without
+from known_flow import (
+    EAST,
+    NORTH,
+    Truth,
+    at_points,
+    current,
+    earth,
+    in_plane,
+    lab,
+    plane,
+    ratio,
+    without,
+)
 from label_forms import BACK, LAT, LON, SERIES, STEADY, series
 
 L, B = np.meshgrid(LON, LAT)
@@ -478,6 +490,16 @@ def direction_of_wind_by_its_description_alone() -> Any:
 @form(options={"direction": "b"}, error="may be its speed are a; name the speed")
 def a_direction_beside_no_known_speed() -> Any:
     return speed_and_direction("from")[0].drop_attrs().rename(wspd="a", wdir="b")
+
+
+@variants(["ws_kn", "wind_speed_kt", "WSPD_knots", "wind_speed_kmh"])
+def speed_with_its_unit_beside_a_direction(name: str) -> Any:
+    """Columns as stations have them: the name of the speed ends with its unit."""
+    ds, truth = speed_and_direction("from")
+    factor = ratio("m/s", "km/h" if name.endswith("kmh") else "knot")
+    columns = {name: factor * ds.wspd.values.ravel(), "wd": ds.wdir.values.ravel()}
+    lon, lat = truth.places.T
+    return pd.DataFrame({"lon": lon, "lat": lat, **columns}), truth
 
 
 @form(options={"u": "wspd", "direction": "wdir"})
