@@ -1,6 +1,7 @@
 """Arguments by which users draw something else, and corrections, as text for each front end.
 
-Messages are written for Python. :func:`for_shell` writes their arguments as flags, and says where
+Messages are written for Python. :func:`for_shell` writes their arguments as flags, and
+:func:`error_for_page` as controls of a page where it has them. :func:`lines_for_shell` says where
 the objects of their lines of Python come from.
 """
 
@@ -10,7 +11,7 @@ import ast
 import json
 import re
 import shlex
-from collections.abc import Collection, Iterable, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -94,18 +95,45 @@ def for_shell(text: str, names: Collection[str]) -> str:
     """
     parts = []
     end = 0
-    line = _LINE.search(text)
-    for match in _ARGUMENT.finditer(text):
-        name, value = match.groups()
-        is_of_line = line is not None and match.start() > line.start()
-        if name not in names or is_of_line or _is_in_call(text, match.start()):
-            continue
+    for match in _typed_arguments(text, names):
         between = text[end : match.start()]
         if end and between == ", ":
             between = " "
-        parts += [between, _flag(name, value)]
+        parts += [between, _flag(*match.groups())]
         end = match.end()
     return "".join([*parts, text[end:]])
+
+
+def error_for_page(text: str, names: Collection[str], controls: Mapping[str, str]) -> str:
+    """Return an error as a page shows it, with controls or flags in place of arguments.
+
+    Parameters
+    ----------
+    text
+        The error, written for Python.
+    names
+        Arguments that have a flag of ``flowtex show``.
+    controls
+        Names of the controls that the page has for arguments.
+    """
+    lines = lines_for_shell(text)
+    for match in reversed(list(_typed_arguments(text, controls))):
+        before = text[: match.start()]
+        control = f"with the control {controls[match[1]]}"
+        text = f"{before.removesuffix('as in ')}{control}{text[match.end() :]}"
+    typed = for_shell(text, names)
+    if typed != text:
+        typed = f"{typed.rstrip('.')} (flags of flowtex show in a shell)"
+    return ". ".join(filter(None, (typed, lines)))
+
+
+def _typed_arguments(text: str, names: Collection[str]) -> Iterator[re.Match[str]]:
+    """Yield the arguments in a text that are no part of a call or a line of Python."""
+    line = _LINE.search(text)
+    for match in _ARGUMENT.finditer(text):
+        is_of_line = line is not None and match.start() > line.start()
+        if match[1] in names and not is_of_line and not _is_in_call(text, match.start()):
+            yield match
 
 
 def lines_for_shell(text: str) -> str:

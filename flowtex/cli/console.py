@@ -15,11 +15,12 @@ from cyclopts import MissingArgumentError
 from flowtex._util.arguments import checked_target
 from flowtex._util.progress import waiting
 from flowtex._util.terminal import terminal
-from flowtex.cli.options import FLAGS, UsageError, arguments
+from flowtex.cli.options import UsageError, arguments
 from flowtex.errors import install_extra
 from flowtex.field.options import FieldOptions
 from flowtex.remedies import for_shell, lines_for_shell
 from flowtex.scene.fields import read_field
+from flowtex.scene.forms import FLAGS
 from flowtex.scene.options import Options
 from flowtex.textures.images import load_image
 

@@ -27,8 +27,6 @@ PICTURE = Group("The picture", sort_key=2)
 PAGE = Group("The page", sort_key=3)
 SETTINGS = Group("Settings", sort_key=4)
 
-#: Names of the arguments of Python that have a flag.
-FLAGS = frozenset((*FORMS, "time", *TABLE))
 FLAT = Parameter(name="*")
 FILE = Annotated[
     Path,

@@ -20,7 +20,7 @@ from flowtex._util.written import (
 from flowtex.field.options import FieldOptions, option_names
 from flowtex.rendering.camera import Camera
 from flowtex.scene.options import EARTH_LINES, ROBUST, SWITCHES, Appearance, ViewOptions
-from flowtex.settings import setting
+from flowtex.settings import TABLE, setting
 
 
 def _read_ends(text: str) -> str | tuple[float, ...]:
@@ -103,3 +103,5 @@ for _kind in (FieldOptions, Appearance, ViewOptions):
             FORMS[_name] = SWITCH
         elif _name not in ("times", "slices"):
             FORMS[_name] = _SPECIAL.get(_name, PLAIN)
+#: Names of the arguments of Python that have a flag in the shell.
+FLAGS = frozenset((*FORMS, "time", *TABLE))

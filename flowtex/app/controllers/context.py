@@ -18,7 +18,9 @@ from flowtex.app.streaming.area import FlowArea
 from flowtex.errors import FieldError
 from flowtex.field import FlowField
 from flowtex.field.interpolation import steps_around
+from flowtex.remedies import error_for_page
 from flowtex.scene.fields import TracedFlow
+from flowtex.scene.forms import FLAGS
 from flowtex.settings import Settings, Signal
 from flowtex.sources.open_source import FlowSource
 
@@ -44,9 +46,10 @@ class Context:
         self.field_changed = Signal()  #: Signal after another flow is shown.
         area.failed.connect(self.complain)
 
-    def complain(self, problem: object) -> None:
-        """Show an error on the page."""
-        self.state.send(problem=shortened(str(problem)))
+    def complain(self, problem: object, controls: Mapping[str, str] | None = None) -> None:
+        """Show an error on the page, with ``controls`` that it has for arguments."""
+        text = error_for_page(str(problem), FLAGS, controls or {})
+        self.state.send(problem=shortened(text))
 
     def show(self, field: FlowField, **keep: bool) -> None:
         """Show another flow; :meth:`Viewport.show` has the parameters."""
@@ -141,6 +144,10 @@ class FlowOpener(Controller):
     def _fail(self) -> None:
         raise NotImplementedError
 
+    def _controls_for(self, request: LoadRequest) -> Mapping[str, str]:
+        """Return the controls by which another part of a requested flow can be chosen."""
+        return {}
+
     def _is_latest(self, request: LoadRequest) -> bool:
         return request is self._request and not request.cancelled
 
@@ -169,7 +176,7 @@ class FlowOpener(Controller):
             if self._is_latest(request):
                 self.state.send(busy="")
         if problem and self._is_latest(request):
-            self.context.complain(problem)
+            self.context.complain(problem, self._controls_for(request))
             self._fail()
 
     async def _read(

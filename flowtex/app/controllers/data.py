@@ -218,6 +218,11 @@ class Data(FlowOpener):
     def _part(self) -> FlowSource:
         return self._current.source.part(self.choice.block or None)
 
+    def _controls_for(self, request: LoadRequest) -> Mapping[str, str]:
+        if request.name != self.name:  # its controls are not shown
+            return {}
+        return _controls(self._current.source, self._part)
+
     def _options(self) -> dict[str, Any]:
         """Return the values of the controls that choose a part of the file."""
         source = self._current.source

@@ -28,7 +28,9 @@ from flowtex.field.formula.make import is_line, line_field
 from flowtex.field.options import FieldOptions
 from flowtex.pyramid import open_store
 from flowtex.pyramid.source import has_parts
+from flowtex.remedies import error_for_page
 from flowtex.scene.fields import read_field
+from flowtex.scene.forms import FLAGS
 from flowtex.sources.datasets import is_dataset
 from flowtex.sources.inspection.foam_files import ENDINGS as FOAM
 from flowtex.sources.inspection.foam_files import case_of
@@ -405,7 +407,7 @@ def reason_text(error: Exception, paths: Iterable[Path]) -> str:
         text = text.removeprefix(f"{path.name}: ")
     if isinstance(error, OSError) and error.strerror:
         text = error.strerror
-    return shortened(text, REASON_LENGTH)
+    return shortened(error_for_page(text, FLAGS, {}), REASON_LENGTH)
 
 
 def _reason_by_ending(path: Path) -> str:

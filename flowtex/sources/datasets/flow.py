@@ -155,7 +155,7 @@ def _unit_of(pair: Pair, array: xr.DataArray) -> str:
         u, v = pair.parts
         unit = str(array.attrs["units"])
         raise FieldError(
-            f'{error}. Otherwise u="{u}", v="{v}" draws them in {unit}, as a displacement'
+            f'{error}. Otherwise u="{u}", v="{v}" draws them as they are, in {unit}'
         ) from None
 
 

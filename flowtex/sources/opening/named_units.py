@@ -65,7 +65,9 @@ def name_and_unit(name: str) -> tuple[str, str]:
     for pattern, unit in _OF_VELOCITY:
         match = re.fullmatch(rf"(.*?){pattern.pattern}", name, re.IGNORECASE)
         if match and (is_velocity(match[1]) or SPEEDS.search(match[1])) and match[1]:
-            return match[1], pattern.sub(unit, name[match.end(1) :].lower())
+            end = pattern.fullmatch(name[match.end(1) :].lower())
+            if end:
+                return match[1], end.expand(unit)
     for pattern, stems in ((_OF_LENGTH, (ACROSS, UPWARD, LEVELS)), (_OF_TIME, (TIMES,))):
         match = re.fullmatch(rf"(.*?){pattern.pattern}", name, re.IGNORECASE)
         if match and any(stem.match(match[1]) for stem in stems):

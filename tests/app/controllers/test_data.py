@@ -74,6 +74,22 @@ async def test_a_file_that_crashes_its_reader_is_a_problem_of_one_page(tmp_path:
         assert library.source("flow.vts").alive
 
 
+async def test_remedy_of_an_error_is_typed_as_a_flag(tmp_path: Path) -> None:
+    pytest.importorskip("xarray")
+    examples.double_gyre(0.0).save(tmp_path / "flow.vts")
+    ds = winds(np.arange(-180.0, 180.0, 20.0), np.arange(-80.0, 81.0, 20.0))
+    for name in ds:
+        ds[name].attrs = {"units": "m/s"}
+    ds.rename(u="vel_1", v="vel_2").to_netcdf(tmp_path / "winds.nc")
+    app = small_page(Library.of(tmp_path), 5, 120, 80)
+    async with playing(app):
+        app.state.send(file="winds.nc")
+        await until(lambda: app.state.get("problem") != "")
+        problem = app.state.get("problem")
+    assert "--vectors vel_1,vel_2 (flags of flowtex show in a shell)" in problem
+    assert "vectors=" not in problem
+
+
 def daily(count: int) -> Any:
     """Winds of so many days."""
     ds = winds(np.arange(-180.0, 180.0, 20.0), np.arange(-80.0, 81.0, 20.0))

@@ -95,7 +95,9 @@ def drift() -> tuple[xr.Dataset, Truth]:
     return ds, grid.truth(km, speed_unit="")
 
 
-@form(error=r"'km', which is not a unit of velocity.*u=\"dX\", v=\"dY\" draws them in km")
+@form(
+    error=r"'km', which is not a unit of velocity.*u=\"dX\", v=\"dY\" draws them as they are, in km"
+)
 def displacements_of_ice() -> Any:
     ds, _ = drift()
     return ds

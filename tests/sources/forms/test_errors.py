@@ -17,8 +17,9 @@ from flowtex.cli import main
 from flowtex.cli.console import typed
 from flowtex.errors import FieldError
 from flowtex.field.options import FieldOptions
-from flowtex.remedies import lines_for_shell
+from flowtex.remedies import error_for_page, lines_for_shell
 from flowtex.scene.fields import read_field
+from flowtex.scene.forms import FLAGS
 
 pytest.importorskip("pyproj")
 LON, LAT = np.arange(-20.0, 21, 4), np.arange(20.0, 61, 4)
@@ -158,3 +159,20 @@ def test_options_of_meshes_are_not_taken_for_axes(option: dict[str, Any]) -> Non
 
     with pytest.raises(FieldError, match="applies to meshes, but this is a dataset; omit it"):
         FlowField.from_xarray(plain(), **option)
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ('choose it, as in level="3 m"', "choose it, with the control Plane"),
+        ('draw it, as in time="last".', "draw it, as in --time last (flags of flowtex show in a"),
+        ('as in level=1, or mask="lsm"', "with the control Plane, or --mask lsm (flags of flowtex"),
+        ("add ds.assign_coords(x=...)", "add ds.assign_coords(x=...). In Python ds is xarray."),
+        ("the file is damaged", "the file is damaged"),
+    ],
+)
+def test_errors_of_a_page_name_its_controls_or_flags(text: str, words: str) -> None:
+    shown = error_for_page(text, FLAGS, {"level": "Plane"})
+    assert shown.startswith(words)
+    if text == words:
+        assert shown == text
