@@ -41,9 +41,11 @@ def brief(value: Any) -> str:
 
 
 def is_number(value: Any) -> bool:
-    """Return whether a value is one real number, not NaN, a string or a boolean."""
+    """Return whether a value is one real number, not NaN, a string, a boolean or a list."""
+    if isinstance(value, (bool, str, bytes)):
+        return False
     try:
-        return not isinstance(value, (bool, str, bytes)) and float(value) == float(value)
+        return np.ndim(value) == 0 and float(value) == float(value)
     except (TypeError, ValueError, OverflowError):  # a whole number may have any size
         return False
 

@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from flowtex._util.arguments import near_names
+from flowtex._util.arguments import brief, near_names
 from flowtex._util.array_types import AnyArray, Bytes, Floats, Floats32
 from flowtex.errors import FieldError
 
@@ -134,10 +134,10 @@ def _named_table(name: Any, count: int) -> Bytes:
     from matplotlib import colormaps
 
     colours = _known(name)
-    if callable(colours):
-        # Rounded down, as PyVista does, so that all renderers have the same colours.
-        return np.asarray(np.asarray(colours(np.linspace(0, 1, count))) * 255, dtype=np.uint8)
     try:
+        if callable(colours):
+            # Rounded down, as PyVista does, so that all renderers have the same colours.
+            return np.asarray(np.asarray(colours(np.linspace(0, 1, count))) * 255, dtype=np.uint8)
         import pyvista as pv
 
         return _resampled(np.asarray(pv.LookupTable(name, n_values=count).values), count)
@@ -146,7 +146,7 @@ def _named_table(name: Any, count: int) -> Bytes:
             hint = near_names(name, colormaps, CMAPS)
         else:
             hint = "expected a name"
-        raise FieldError(f"the colour map {name!r} does not exist; {hint}") from error
+        raise FieldError(f"the colour map {brief(name)} does not exist; {hint}") from error
 
 
 _cached_table = cache(_named_table)

@@ -53,7 +53,8 @@ def as_seconds(times: Any, time_unit: str) -> tuple[ArrayLike | None, str, Any]:
         if values.dtype.kind == "O" and values.size and hasattr(values.flat[0], "isoformat"):
             start = values.flat[0]
             # Other calendars have days that datetime64 lacks; their differences are spans.
-            values = (values - start).astype("timedelta64[us]")
+            spans: Any = np.asarray(values - start, dtype="timedelta64[us]")
+            values = spans
     except (TypeError, ValueError):  # refused later, with its name
         return times, time_unit, None
     if values.dtype.kind not in "mM":

@@ -13,6 +13,7 @@ from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import Field, dataclass, field, fields
 from typing import Any, TypeVar
 
+import numpy as np
 from numpy.typing import ArrayLike
 
 from flowtex._util.arguments import brief
@@ -30,6 +31,16 @@ OF_UNITS = ("length_unit", "time_unit", "velocity_unit")
 OF_BOTH = ("mask", "components", *OF_UNITS, "uncertainty")
 OF_DATASETS = ("vectors", *OF_EARTH, *OF_BOTH)  #: Arguments for datasets.
 
+#: What is accepted in fields of an option class, by the type that they are declared with.
+ACCEPTED: dict[str, tuple[tuple[type, ...], str]] = {
+    "str | None": ((str,), "a text"),
+    "bool | None": ((bool, np.bool_), "True or False"),
+    "str | bool | None": ((str, bool, np.bool_), "a name, True or False"),
+    "int | str | None": ((int, np.integer, str), "a whole number or a text"),
+    "float | str | None": ((int, float, np.number, str), "a number or a text"),
+    "Mapping[str, Any] | None": ((Mapping,), "a dict"),
+}
+
 Function = TypeVar("Function", bound=Callable[..., Any])
 
 
@@ -44,8 +55,8 @@ class FieldOptions:
 
     vectors: str | None = option(
         None,
-        "Name of the velocity, or of its two or three components separated by commas, such as "
-        "``u,v,w``; not needed if there is only one candidate.",
+        "Name of the velocity, or of its two or three components, such as ``u,v,w`` or "
+        '``("u", "v")``; not needed if there is only one candidate.',
     )
     u: str | None = option(None, "Name of the first component; use it instead of ``vectors``.")
     v: str | None = option(None, "Name of the second component.")
@@ -143,6 +154,18 @@ class FieldOptions:
     #: Values that colour the surface, one for each node or cell; no argument of its own.
     array: Any | None = None
 
+    def __post_init__(self) -> None:
+        """Check the types of the values."""
+        for each in fields(self):
+            value = getattr(self, each.name)
+            accepted = ACCEPTED.get(str(each.type))
+            if value is None or accepted is None:
+                continue
+            types, expected = accepted
+            if not isinstance(value, types):
+                meaning = each.metadata["text"].replace("``", "'")
+                raise FieldError(f"{each.name} is {brief(value)}; expected {expected}: {meaning}")
+
     @classmethod
     def of(cls, **given: Any) -> FieldOptions:
         """Return the options of arguments; names of components are joined to ``vectors``.
@@ -157,13 +180,10 @@ class FieldOptions:
         FieldError
             When names are arrays, do not belong together, or contradict one another.
         """
-        for argument in ("vectors", *"uvw"):
-            name = given.get(argument)
-            if not isinstance(name, (str, type(None))):
-                raise FieldError(
-                    f"{argument} is {brief(name)}; expected the name of an array. Pass arrays "
-                    "themselves by position, as in flowtex.show(x, y, u, v)"
-                )
+        for argument in ("vectors", "dims"):
+            if argument in given:
+                given[argument] = _joined_names(given[argument])
+        _check_names(given)
         chosen = _with_direction(given)
         components = {}
         for argument in "uvw":
@@ -229,6 +249,25 @@ class FieldOptions:
 def option_names(kind: type) -> tuple[str, ...]:
     """Return the names of the fields of an option class that are arguments, which have a text."""
     return tuple(each.name for each in fields(kind) if "text" in each.metadata)
+
+
+def _check_names(given: Mapping[str, Any]) -> None:
+    """Raise a FieldError for arrays in place of names."""
+    for argument in ("vectors", *"uvw"):
+        name = given.get(argument)
+        if not isinstance(name, (str, type(None))):
+            raise FieldError(
+                f"{argument} is {brief(name)}; expected the name of an array. Pass arrays "
+                "themselves by position, as in flowtex.show(x, y, u, v)"
+            )
+
+
+def _joined_names(value: Any) -> Any:
+    """Return a list of names as one text with commas; anything else as it is."""
+    is_list = isinstance(value, (list, tuple))
+    if is_list and value and all(isinstance(name, str) for name in value):
+        return ",".join(value)
+    return value
 
 
 def _with_direction(given: Mapping[str, Any]) -> dict[str, Any]:

@@ -164,7 +164,8 @@ class Appearance:
         """Return the appearance of arguments, of which some stand for others.
 
         ``scalars=None`` is the speed, ``cmap=None`` the colour map that suits the scalars, one
-        number as ``clim`` a range around zero, and ``land=False`` or ``"none"`` no colour.
+        number as ``clim`` a range around zero, ``land=False`` or ``"none"`` no colour, and any
+        other ``None`` the default.
 
         Parameters
         ----------
@@ -176,13 +177,19 @@ class Appearance:
         FieldError
             When a value is invalid; the error lists all that are.
         """
-        values = dict(given)
+        values = {}
+        for name, value in given.items():
+            if value is not None or name == "land":
+                values[name] = value
         scalars = values.get("scalars")
         if scalars is None or scalars is True:
             values["scalars"] = SPEED
         if values.get("cmap") is None:
             values["cmap"] = default_cmap(values["scalars"])
         values["clim"] = _as_range(values.get("clim"))
+        count: Any = values.get("n_colors")
+        if is_number(count) and float(count).is_integer():
+            values["n_colors"] = int(count)
         land = values.get("land", LAND_COLOR)
         if land is False or (isinstance(land, str) and land == "none"):
             values["land"] = None
@@ -444,7 +451,8 @@ class ViewOptions:
 
     def __post_init__(self) -> None:
         """Check values that nothing else checks."""
-        if self.axes is not None and self.axes not in AXES:
+        is_known = isinstance(self.axes, str) and self.axes in AXES
+        if self.axes is not None and not is_known:
             raise FieldError(
                 f"axes is {brief(self.axes)}; expected {', '.join(map(repr, AXES))}, or None"
             )
@@ -510,7 +518,8 @@ class Options:
             if field is not None and field.projection is None and getattr(self.appearance, name):
                 notify(f"{name} is True, but the field is not on the Earth; none is drawn")
         lines = self.settings.get("lines", "auto")
-        if field is not None and field.steady and lines != "auto":
+        is_chosen = isinstance(lines, str) and lines != "auto"
+        if field is not None and field.steady and is_chosen:
             notify(f"lines is {lines!r}, but the flow is steady: its lines are all the same")
         if self.appearance.image is not None:
             noise = values.setdefault("noise", "image")

@@ -14,6 +14,7 @@ from typing import Any, Literal
 
 import numpy as np
 
+from flowtex._util.arguments import brief, is_number
 from flowtex._util.array_types import Bytes, Floats, Floats32
 from flowtex._util.cache import WeakCache, digest
 from flowtex._util.colours import (
@@ -375,8 +376,9 @@ class Scene:
     @time.setter
     def time(self, value: Any) -> None:
         if self.field.steady and self.field.start is None:
-            if value != self._time:
-                notify(f"time is {value!r}, but the field is steady: it is the same at all times")
+            if not (is_number(value) and value == self._time):
+                text = brief(value)
+                notify(f"time is {text}, but the field is steady: it is the same at all times")
             return
         self._show_time(time_within(self.field.start, self.field.times, value))
         self._changed.emit("uniform")

@@ -45,9 +45,12 @@ def as_coast(source: Any) -> Any:
         return source
     if isinstance(source, (str, os.PathLike)):
         path = checked_source(source)
-        if not path.exists():
+        if not path.is_file():
+            fault = "is a folder"
+            if not path.exists():
+                fault = "does not exist"
             raise FieldError(
-                f"coastlines is {str(source)!r}, which does not exist; expected True, False, or "
+                f"coastlines is {str(source)!r}, which {fault}; expected True, False, or "
                 "the path of a GeoJSON, shapefile or GeoPackage with lines or polygons"
             )
         return _read(str(path), path.stat().st_mtime_ns)

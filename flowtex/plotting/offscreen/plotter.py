@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from flowtex._util.arguments import checked_size
+from flowtex._util.arguments import checked_count, checked_size, is_number
 from flowtex._util.array_types import Bytes
 from flowtex.errors import FieldError, notify
 from flowtex.field.options import FieldOptions, accepts_options
@@ -53,7 +53,7 @@ class OffscreenPlotter:
         still: bool = False,
         annotations: bool = False,
     ) -> None:
-        _check_size(size, supersampling)
+        size, supersampling = _checked_size(size, supersampling)
         require_opengl()
         notify_section(scenes[0].field.section)
         self._legend = scenes[0].has_bar
@@ -173,11 +173,12 @@ class OffscreenPlotter:
         self._plotter.close()
 
 
-def _check_size(size: tuple[int, int], supersampling: int) -> None:
-    if supersampling not in range(1, MAX_SUPERSAMPLING + 1):
-        raise FieldError(
-            f"supersampling is {supersampling!r}; expected 1 to {MAX_SUPERSAMPLING}, such as 2"
-        )
+def _checked_size(size: Any, supersampling: Any) -> tuple[tuple[int, int], int]:
+    """Return width and height, and the samples along a pixel, of a picture that can be drawn."""
+    expected = f"1 to {MAX_SUPERSAMPLING}, such as 2"
+    supersampling = checked_count(
+        "supersampling", supersampling, 1, MAX_SUPERSAMPLING, expected=expected
+    )
     size = checked_size(size, low=0)
     if min(size) < 1 or max(size) * supersampling > LONGEST_SIDE:
         if supersampling > 1:
@@ -188,6 +189,7 @@ def _check_size(size: tuple[int, int], supersampling: int) -> None:
             f"size is {size[0]} x {size[1]}{times}; expected 1 to {LONGEST_SIDE} pixels along "
             "each side: choose a smaller size, or less supersampling"
         )
+    return size, supersampling
 
 
 @takes_arrays()
@@ -261,7 +263,8 @@ def render(
     )
     with closing(plotter):
         scene = plotter.handles[0].scene
-        if clock and scene.settings.motion == "off":
+        is_advanced = is_number(clock) and clock != 0
+        if is_advanced and scene.settings.motion == "off":
             notify(f"clock is {clock!r}, but motion is 'off', and nothing moves")
         picture = plotter.picture(time=time, clock=clock)
         TracedFlow(scene.field, scene.store, scene.pyramid).keep()

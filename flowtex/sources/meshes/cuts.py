@@ -114,7 +114,7 @@ def slice_of(raw: Any) -> Slice:
         if match := _AXIS.fullmatch(raw):
             normal = [float(axis == match["axis"].lower()) for axis in "xyz"]
             point = match["at"] and [_number(match["at"]) * on for on in normal]
-    elif isinstance(raw, (list, tuple, np.ndarray)) and len(raw) == 2:
+    elif _is_pair(raw):
         normal, point = raw
         if isinstance(normal, str) and normal in "xyz":
             normal = np.arange(3) == "xyz".index(normal)
@@ -149,6 +149,12 @@ def contour_of(raw: Any) -> Contour:
             return Contour(name, value, repr(raw))
     expected = 'expected an array and its value, as in contour="pressure=101325"'
     raise FieldError(f"contour is {brief(raw)}; {expected}")
+
+
+def _is_pair(raw: Any) -> bool:
+    is_list = isinstance(raw, (list, tuple))
+    is_matrix = isinstance(raw, np.ndarray) and raw.ndim == 2
+    return (is_list or is_matrix) and len(raw) == 2
 
 
 def _vector(raw: Any) -> Vector | None:
