@@ -9,8 +9,10 @@ from typing import Any, cast
 import numpy as np
 
 from flowtex._util.array_types import Bools, Floats, Floats32, Indices
+from flowtex._util.arrays import dot, norm
 from flowtex._util.progress import check, track
 from flowtex.field import FlowField
+from flowtex.field.triangles.triangle_nodes import incidence
 from flowtex.field.triangles.triangle_surface import TriangleSurface
 from flowtex.trace.compose import ERROR_CELLS, ERROR_SHARE, MOST_PIECES, Map
 from flowtex.trace.integrate import MOST_CELLS, Paths
@@ -106,8 +108,11 @@ def triangle_slices(
     jobs = [(a, b, c) for a in range(len(sides)) for b in range(len(steps)) for c in blocks]
     for _ in track(run(work, jobs), len(jobs), "Tracing", show=progress):
         pass
+    if compositions:
+        search = _Search(mesh, points)
+        bends = _Bends(mesh, points)
     for side, composition in enumerate(compositions):
-        composition.complete(at, run)
+        composition.complete(at, search, bends, run)
         reach[side, 0, 0] = composition.reach / unit[0]
     return TraceSlices(
         lags=lags,
@@ -225,6 +230,7 @@ class Composition:
         self.lags = lags
         self.direct = direct
         self.moved = moved
+        self._moved_in_row = moved.reshape(-1, 3)
         count = len(points)
         #: Lag at which each path ends, (N,); 0 for nodes that are not followed.
         self.reach = np.zeros(count)
@@ -246,14 +252,12 @@ class Composition:
         found = paths.reach <= self.lags[self.direct - 1]
         self.reach[nodes] = np.where(found, paths.reach, np.inf)
 
-    def complete(self, nodes: Indices, run: Map) -> None:
+    def complete(self, nodes: Indices, search: _Search, bends: _Bends, run: Map) -> None:
         """Fill the long slices at the nodes (n,) that are followed."""
-        search = _Search(self.mesh, self.points)
-        self._bends = _Bends(self.mesh, self.points)
         with np.errstate(all="ignore"):
             for m in range(self.direct, len(self.lags)):
                 check()
-                self._judge(m - 1, search.normals)
+                self._judge(m - 1, bends, search.normals)
                 self._triangle[m] = self._triangle[m - 1]
                 going = nodes[np.isinf(self.reach[nodes])]
                 blocks = [going[k : k + PIECE_BLOCK] for k in range(0, len(going), PIECE_BLOCK)]
@@ -264,7 +268,7 @@ class Composition:
                 moved = place + self._ahead[:, nodes] * beyond - self.points[nodes].T
                 self.moved[m, nodes] = np.clip(moved.T, -MOST_CELLS, MOST_CELLS)
 
-    def _judge(self, j: int, normals: Floats) -> None:
+    def _judge(self, j: int, bends: _Bends, normals: Floats) -> None:
         """Find the triangles in which slice j continues paths."""
         reach = self.reach[self._corners]
         first = reach.min(axis=0)
@@ -279,7 +283,7 @@ class Composition:
         stretch: Floats | float = 1.0
         if not self.motion.by_length:
             stretch = table[:, 9] / table[:, 10]
-        bend = self._bends.of(self.points + self.moved[j], self._triangle[j], normals)
+        bend = bends.of(self.points + self.moved[j], self._triangle[j], normals)
         good &= bend <= 8 * (ERROR_SHARE * self.lags[j] * stretch + ERROR_CELLS * self.mesh.size)
         self._longest[good & (self._longest == j - 1)] = j
 
@@ -296,12 +300,12 @@ class Composition:
             left = (self.lags[m] - lag) * (1 + ROUNDING)
             number = np.searchsorted(self.lags, left, side="right") - 1
             if pieces < MOST_PIECES:
-                number = np.minimum(number, self._longest[triangle])
+                number = np.minimum(number, self._longest.take(triangle))
             number = np.minimum(number, most)
             pieces += 1
             begin, target, ends = self._piece(m, nodes, number, triangle, shares)
             found, at, outside = search.find(begin, target)
-            span = self.lags[number]
+            span = self.lags.take(number)
             # Beside a border that bends, the chord of paths that continue may lie outside, as it
             # does where a path ends that its neighbours pass: a shorter piece shows which.
             unclear = outside & np.isfinite(ends)
@@ -309,11 +313,16 @@ class Composition:
             most = np.where(again, number - 1, m)
             triangle = np.where(again, triangle, found)
             shares = np.where(again, shares, at)
-            self._triangle[m, nodes], self._shares[:, nodes] = triangle, shares
             ended = ~again & ((ends <= span) | unclear)
             self.reach[nodes[ended]] = (lag + np.minimum(ends, span))[ended]
             lag += np.where(again, 0.0, span)
-            on = ~ended & (lag < self.lags[m] * (1 - ROUNDING))
+            is_left = ~ended & (lag < self.lags[m] * (1 - ROUNDING))
+            done = np.flatnonzero(~is_left)
+            if not len(done):
+                continue
+            self._triangle[m, nodes[done]] = triangle[done]
+            self._shares[:, nodes[done]] = shares[:, done]
+            on = np.flatnonzero(is_left)
             nodes = nodes[on]
             triangle = triangle[on]
             shares = shares[:, on]
@@ -331,16 +340,17 @@ class Composition:
         """
         corners = self._corners.take(triangle, axis=1)
         weights = all_shares(shares)
-        reach = self.reach[corners]
-        span = self.lags[number]
+        reach = self.reach.take(corners)
+        span = self.lags.take(number)
         ended = reach <= span
+        # Nodes of all slices in a row.
+        rows = number * len(self.points) + corners
         target = _blend(weights, self.points, corners)
-        for weight, nodal in zip(weights, corners, strict=True):
-            target += weight * self.moved[number, nodal].T
+        target += _blend(weights, self._moved_in_row, rows)
         best = np.where(ended, -1.0, weights)
         nearest = np.where(best[0] >= np.maximum(best[1], best[2]), 0, 1 + (best[2] > best[1]))
-        nodal = corners[nearest, np.arange(len(nodes))]
-        begin = self._triangle[number, nodal].astype(np.intp)
+        row = rows[nearest, np.arange(len(nodes))]
+        begin = self._triangle.take(row).astype(np.intp)
         ends = np.full(len(nodes), np.inf)
         near = np.flatnonzero(ended.any(axis=0))
         if len(near):
@@ -379,9 +389,10 @@ class _Search:
 
         The search begins at some triangles (n,).
         """
+        current = self._shares(triangle, place)
         result = triangle.copy()
+        shares = current.copy()
         outside = np.zeros(len(triangle), dtype=bool)
-        shares = np.empty((3, len(triangle)))
         which = np.arange(len(triangle))
         before = triangle
         # Triangles in which the search was at a power of two of rounds.
@@ -389,29 +400,36 @@ class _Search:
         for crossed in range(MOST_CROSSED):
             if crossed & (crossed - 1) == 0:
                 mark = triangle
-            row = np.ascontiguousarray(self._table.take(triangle, axis=0).T)
-            away = place - row[:3]
-            second = np.einsum("cn,cn->n", row[3:6], away)
-            third = np.einsum("cn,cn->n", row[6:9], away)
-            current = np.stack([1 - second - third, second, third])
-            result[which], shares[:, which] = triangle, current
             out = np.flatnonzero(np.minimum(np.minimum(*current[:2]), current[2]) < -ROUNDING)
-            code = self._across[3 * triangle[out] + current[:, out].argmin(axis=0)]
+            code = self._across.take(3 * triangle[out] + current[:, out].argmin(axis=0))
             outside[which[out[code < 0]]] = True
             # Over a ridge the search would go to and fro, and about a corner round and round.
             ahead = code >> 3
             on = (code >= 0) & (ahead != before[out]) & (ahead != mark[out])
             out = out[on]
+            if not len(out):
+                break
             before = triangle[out]
             mark = mark[out]
             which = which[out]
-            triangle = code[on] >> 3
+            triangle = ahead[on]
             place = place[:, out]
-            if not len(which):
-                break
+            current = self._shares(triangle, place)
+            result[which] = triangle
+            shares[:, which] = current
         np.fmin(np.fmax(shares, 0.0, out=shares), 1.0, out=shares)
         total = shares.sum(axis=0)
         return result, np.asarray(shares[1:] / np.where(total > 0, total, 1.0)), outside
+
+    def _shares(self, triangle: Indices, place: Floats) -> Floats:
+        """Return the shares (3, n) of the corners of triangles (n,) at positions (3, n)."""
+        row = np.ascontiguousarray(self._table.take(triangle, axis=0).T)
+        away = place - row[:3]
+        shares = np.empty(away.shape)
+        np.einsum("cn,cn->n", row[3:6], away, out=shares[1])
+        np.einsum("cn,cn->n", row[6:9], away, out=shares[2])
+        shares[0] = 1 - shares[1] - shares[2]
+        return shares
 
 
 class _Bends:
@@ -427,20 +445,25 @@ class _Bends:
         #: Edges by the corners opposite to them, in the triangles on both sides.
         self._sides = (near, far)
         self._count = len(mesh.corners)
-        #: Nodes there, (2, E), and at the ends of the edges, (2, E).
-        self._tips = flat[np.stack(self._sides)]
-        self._ends = mesh.corners[triangle, (k + np.array([[1], [2]])) % 3]
-        begin, end = points[self._ends]
+        tips = flat[np.stack(self._sides)]
+        ends = mesh.corners[triangle, (k + np.array([[1], [2]])) % 3]
+        begin, end = points[ends]
         along = end - begin
-        away = points[self._tips] - begin
+        away = points[tips] - begin
         with np.errstate(all="ignore"):
             foot = np.einsum("sec,ec->se", away, along) / np.einsum("ec,ec->e", along, along)
             height = np.linalg.norm(away - foot[..., None] * along, axis=-1)
-            #: Share of the near tip in the far one, and share of the second end.
-            self._near = -height[1] / height[0]
-            self._second = foot[1] - self._near * foot[0]
+            # Share of the near tip in the far one, and share of the second end.
+            share = -height[1] / height[0]
+            second = foot[1] - share * foot[0]
             #: By the smaller of the two triangles.
             self._scale = np.minimum(height[0] / height[1], 1.0)
+        weights = np.stack([np.ones(len(near)), -share, share + second - 1, -second], axis=-1)
+        nodes = np.stack([tips[1], tips[0], *ends], axis=-1)
+        #: Second differences of values at the nodes, (E, N).
+        self._differences = incidence(nodes, len(points), weights)
+        #: Nodes opposite to the edges, on one side.
+        self._far = tips[1]
 
     def of(self, place: Floats, triangle: Indices, normals: Floats) -> Floats:
         """Return the greatest second difference of positions (N, 3) at each triangle's edges, (T,).
@@ -448,20 +471,19 @@ class _Bends:
         Components normal to the triangles (N,) of the positions are left out: they are due to the
         bend of the surface.
         """
-        near = self._near[:, None]
-        second = self._second[:, None]
-        (tip, far) = place[self._tips]
-        (begin, end) = place[self._ends]
-        bend = far - begin - near * (tip - begin) - second * (end - begin)
-        normal = normals[triangle[self._tips[1]]]
-        bend -= np.einsum("ec,ec->e", bend, normal)[:, None] * normal
-        size = np.sqrt(np.einsum("ec,ec->e", bend, bend)) * self._scale
+        bend = self._differences @ place
+        normal = normals.take(triangle.take(self._far), axis=0)
+        bend -= dot(bend, normal)[:, None] * normal
+        size = norm(bend) * self._scale
         result = np.zeros(3 * self._count)
         for side in self._sides:
             result[side] = size
         return np.maximum(np.maximum(result[::3], result[1::3]), result[2::3])
 
 
-def _blend(weights: Floats, nodal: Floats, corners: Indices) -> Floats:
+def _blend(weights: Floats, nodal: Floats | Floats32, corners: Indices) -> Floats:
     """Return the mean (3, n) of nodal vectors (N, 3) at corners (3, n), by weights (3, n)."""
-    return np.asarray(sum(w * nodal[at].T for w, at in zip(weights, corners, strict=True)))
+    result = np.zeros((corners.shape[1], 3))
+    for weight, at in zip(weights, corners, strict=True):
+        result += weight[:, None] * nodal.take(at, axis=0)
+    return result.T

@@ -13,6 +13,7 @@ from flowtex.field.triangles.triangle_nodes import (
     flipped,
     merged_nodes,
     neighbours,
+    repeated,
     triangle_normals,
     uneven_nodes,
 )
@@ -31,6 +32,19 @@ def test_neighbours_share_the_edge_opposite_to_a_corner(rng: np.random.Generator
     border = int((beside < 0).sum())
     sides = (3 * len(triangles) + border) // 2
     assert len(points) - sides + len(triangles) == 1
+
+
+@pytest.mark.parametrize("copies", [0, 1, 7])
+def test_a_triangle_is_repeated_from_its_second_place_on(
+    rng: np.random.Generator, copies: int
+) -> None:
+    _, triangles = random_plane(rng, 20_000)
+    at = rng.choice(len(triangles), copies, replace=False)
+    # In another order of the corners, and some of them twice.
+    more = np.concatenate([np.roll(triangles[at], 1, axis=1), triangles[at[:2], ::-1]])
+    found = repeated(np.concatenate([triangles, more]))
+    assert not found[: len(triangles)].any()
+    assert found[len(triangles) :].all()
 
 
 def test_nodes_that_rounding_moved_are_one() -> None:
