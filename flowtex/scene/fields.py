@@ -24,7 +24,14 @@ from flowtex.settings import Settings
 from flowtex.sources.datasets import is_dataset
 from flowtex.sources.datasets.own_values import with_values
 from flowtex.sources.meshes.vectors import with_array
-from flowtex.sources.plain_arrays import are_labelled, is_plain, read_arrays, read_labelled
+from flowtex.sources.own_labels import values_in_order
+from flowtex.sources.plain_arrays import (
+    are_labelled,
+    is_plain,
+    labelled_dataset,
+    read_arrays,
+    read_labelled,
+)
 from flowtex.sources.read_fields import field_of_dataset, field_of_file, field_of_mesh
 from flowtex.textures.tiles.pyramid import Pyramid
 from flowtex.textures.tiles.shared import has_pyramid, shared_pyramid
@@ -107,6 +114,10 @@ def read_field(mesh: Any, options: FieldOptions, time: float | str | None = None
     """
     array = options.array
     uncertainty = options.uncertainty
+    if array is not None and are_labelled(mesh):
+        mesh, options = labelled_dataset(mesh, options)
+    if array is not None:
+        array = values_in_order(mesh, array, options.vectors)
     if array is not None and hasattr(mesh, "point_data"):
         mesh = with_array(mesh, DATA, array)
         array = None

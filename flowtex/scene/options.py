@@ -29,6 +29,7 @@ from flowtex.errors import FieldError, notify, raise_faults
 from flowtex.field import FlowField, Surface
 from flowtex.field.derived.kinds import SIGNED
 from flowtex.field.earth.coast import Coast
+from flowtex.field.matched_labels import has_labels
 from flowtex.field.options import FieldOptions, option, option_names
 from flowtex.field.validation import with_gaps
 from flowtex.field.vector_names import COMPONENTS, component_name
@@ -567,7 +568,9 @@ def _with_data(values: Mapping[str, Any]) -> dict[str, Any]:
     is_list = isinstance(scalars, (list, tuple))  # perhaps of rows of different lengths
     if not is_list and np.ndim(scalars) == 0:
         return dict(values)
-    return {**values, "scalars": DATA, "array": with_gaps("scalars", scalars)}
+    if not has_labels(scalars):
+        scalars = with_gaps("scalars", scalars)
+    return {**values, "scalars": DATA, "array": scalars}
 
 
 def _unknown_argument(name: str, value: Any, known: Sequence[str]) -> str:

@@ -102,6 +102,13 @@ def read_arrays(data: Any, options: FieldOptions, scalars: Mapping[str, Any]) ->
 
 def read_labelled(data: tuple[Any, ...], options: FieldOptions) -> FlowField:
     """Return the field of arrays ``u, v`` or ``x, y, u, v``, by their labels."""
+    return field_of_dataset(*labelled_dataset(data, options))
+
+
+def labelled_dataset(
+    data: tuple[Any, ...], options: FieldOptions
+) -> tuple[xr.Dataset, FieldOptions]:
+    """Return arrays ``u, v`` or ``x, y, u, v`` as a dataset, and options with their names."""
     *places, u, v = data
     if has_positions(u):
         u = as_array(u)
@@ -109,13 +116,12 @@ def read_labelled(data: tuple[Any, ...], options: FieldOptions) -> FlowField:
     if None in (u.name, v.name) or u.name == v.name:
         u = u.rename("u")
         v = v.rename("v")
-    ds = u.to_dataset().assign({v.name: v})
+    ds: xr.Dataset = u.to_dataset().assign({v.name: v})
     for name, place in zip("xy", places, strict=False):
         ds = ds.assign_coords({place.name or name: place})
-    given = options
     if options.vectors is None:
-        given = replace(options, vectors=f"{u.name},{v.name}")
-    return field_of_dataset(ds, given)
+        options = replace(options, vectors=f"{u.name},{v.name}")
+    return ds, options
 
 
 def _field(
