@@ -17,6 +17,8 @@ from flowtex._util.array_types import AnyArray, Floats
 
 #: Latitude of the border of the cap, and of the southern end, in degrees.
 CAP, SOUTH = 60.0, -75.0
+#: Places of sides in their cells, which they nearly reach: other tiles go on in other directions.
+SIDES = {"western": 1e-3, "southern": 1e-3, "eastern": 1 - 1e-3, "northern": 1 - 1e-3}
 #: Parts of the Earth's axis of the rotation, and of others, in metres per second at its equator.
 AXIS = (3.0, -5.0, 8.0)
 
@@ -99,9 +101,17 @@ def along(tile: Tile, i: Floats, j: Floats, axis: int) -> Floats:
     return np.asarray(ahead / np.linalg.norm(ahead, axis=-1, keepdims=True))
 
 
-def llc(n: int = 12, *, angles: bool = False, face: str = "face") -> xr.Dataset:
-    """Return u on the western and v on the southern sides of cells of the 13 tiles."""
-    middle, side = np.arange(n) + 0.5, np.arange(n) + 0.0
+def llc(
+    n: int = 12,
+    *,
+    angles: bool = False,
+    face: str = "face",
+    sides: tuple[str, str] = ("western", "southern"),
+) -> xr.Dataset:
+    """Return u and v on sides of cells of the 13 tiles, such as the western and southern ones."""
+    middle = np.arange(n) + 0.5
+    side_i = np.arange(n) + SIDES[sides[0]]
+    side_j = np.arange(n) + SIDES[sides[1]]
     arrays: dict[str, list[Floats]] = {name: [] for name in ("XC", "YC", "U", "V", "CS", "SN")}
     for number in range(13):
         tile = Tile(number, n)
@@ -116,13 +126,16 @@ def llc(n: int = 12, *, angles: bool = False, face: str = "face") -> xr.Dataset:
         arrays["YC"].append(lat)
         arrays["CS"].append((forward * east).sum(-1))
         arrays["SN"].append((forward * north).sum(-1))
-        # One-sided at borders, as other tiles go on in another direction.
-        i, j = np.meshgrid(side + 1e-3, middle)
+        i, j = np.meshgrid(side_i, middle)
         arrays["U"].append((rotation(tile.at(i, j)) * along(tile, i, j, 0)).sum(-1))
-        i, j = np.meshgrid(middle, side + 1e-3)
+        i, j = np.meshgrid(middle, side_j)
         arrays["V"].append((rotation(tile.at(i, j)) * along(tile, i, j, 1)).sum(-1))
     cells = (face, "j", "i")
-    dims = {"U": (face, "j", "i_g"), "V": (face, "j_g", "i")}
+    names = {True: "g", False: "right"}
+    dims = {
+        "U": (face, "j", f"i_{names[sides[0] == 'western']}"),
+        "V": (face, f"j_{names[sides[1] == 'southern']}", "i"),
+    }
     ds = xr.Dataset({name: (dims.get(name, cells), np.stack(a)) for name, a in arrays.items()})
     attrs = {"U": "sea_water_x_velocity", "V": "sea_water_y_velocity"}
     for name, text in attrs.items():

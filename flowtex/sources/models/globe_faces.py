@@ -103,7 +103,7 @@ def _unknown(pair: Pair, face: str, count: int) -> str:
 
 @dataclass(frozen=True, eq=False)
 class Faces:
-    """Faces of which components lie in the middle of cells, or on their first sides."""
+    """Faces of which components lie in the middle of cells, or on their first or last sides."""
 
     lon: xr.DataArray  #: Of the middles of cells, along the face, rows and columns.
     lat: xr.DataArray
@@ -113,6 +113,8 @@ class Faces:
     along_i: Floats
     along_j: Floats
     why: str  #: What says the directions.
+    #: Steps along rows and columns in which components lie on the first sides of cells.
+    steps: tuple[int, int] = (1, 1)
 
     @classmethod
     def of(
@@ -136,12 +138,15 @@ class Faces:
             on_sides = u_dims[1:2] == (rows,) and v_dims[2:] == (columns,)
             if not (on_sides and (is_along or not is_centred)):
                 continue
-            if not is_centred and not _are_first(u_dims, v_dims, lon, datasets):
+            steps: tuple[int, int] | None = (1, 1)
+            if not is_centred:
+                steps = _steps(u_dims, v_dims, lon, datasets)
+            if steps is None:
                 continue
             lon = lon.transpose(face, rows, columns)
             lat = lat.transpose(face, rows, columns)
             along_i, along_j, why = _directions(datasets, lon, lat)
-            return cls(lon, lat, u_dims, v_dims, along_i, along_j, why)
+            return cls(lon, lat, u_dims, v_dims, along_i, along_j, why, steps)
         return None
 
     @property
@@ -149,10 +154,19 @@ class Faces:
         """Dimensions of the middles of cells."""
         return tuple(map(str, self.lon.dims))
 
+    def ahead(self, values: Floats) -> Floats:
+        """Return values (..., J, I) in the order in which the sides before cells are theirs."""
+        row, column = self.steps
+        return values[..., ::row, ::column]
+
     def components(self, u: Floats, v: Floats, beyond: Beyond | None) -> tuple[Floats, Floats]:
         """Return eastward and northward components (..., F, J, I) in the middle of cells."""
         if beyond is not None:
-            u, v = beyond.centred(u, v)
+            row, column = self.steps
+            # In the other direction the last sides are the first ones.
+            u, v = beyond.centred(column * self.ahead(u), row * self.ahead(v))
+            u = column * self.ahead(u)
+            v = row * self.ahead(v)
         east = u * self.along_i[..., 0] + v * self.along_j[..., 0]
         north = u * self.along_i[..., 1] + v * self.along_j[..., 1]
         return east, north
@@ -220,21 +234,27 @@ def _surface_dims(array: xr.DataArray, face: str, cells: tuple[str, str]) -> tup
     return ()
 
 
-def _are_first(
+def _steps(
     u_dims: tuple[str, ...],
     v_dims: tuple[str, ...],
     lon: xr.DataArray,
     datasets: Sequence[xr.Dataset],
-) -> bool:
-    """Return whether components lie on the first sides of cells, as many as cells."""
-    rows, columns = v_dims[1], u_dims[2]
-    _, cell_rows, cell_columns = (u_dims[0], u_dims[1], v_dims[2])
-    for side, cell in ((columns, cell_columns), (rows, cell_rows)):
+) -> tuple[int, int] | None:
+    """Return steps along rows and columns, 1 for components on first sides and -1 for last ones.
+
+    They are ``None`` where there are not as many sides as cells.
+    """
+    steps = []
+    for side, cell in ((v_dims[1], u_dims[1]), (u_dims[2], v_dims[2])):
         count = lon.sizes[cell]
         sizes = {ds.sizes[side] for ds in datasets if side in ds.sizes}
-        if sizes != {count} or first_side(side, cell, (count, count), datasets) != 0:
-            return False
-    return True
+        if sizes != {count}:
+            return None
+        if first_side(side, cell, (count, count), datasets) == 0:
+            steps.append(1)
+        else:
+            steps.append(-1)
+    return steps[0], steps[1]
 
 
 def _directions(
@@ -335,7 +355,8 @@ def _turned(
     beyond = None
     text = f"{u.name} and {v.name} turned to east and north by {faces.why}"
     if faces.u_dims != faces.v_dims:
-        beyond = Beyond.of(np.asarray(values_in(faces.lon)), np.asarray(values_in(faces.lat)))
+        lon, lat = (np.asarray(values_in(c)) for c in (faces.lon, faces.lat))
+        beyond = Beyond.of(faces.ahead(lon), faces.ahead(lat))
         text += f", after means of the sides of cells, also across borders of {faces.dims[0]}"
     record("components", text)
     xarray = import_extra("xarray", "xarray")

@@ -39,13 +39,14 @@ def away_from_corners(p: Floats) -> Bools:
     return np.asarray((p @ corners.T).max(axis=-1) < np.cos(np.radians(CORNER)))
 
 
-def check(field: FlowField, scale: float = 1.0, step: int = 0) -> None:
+def check(field: FlowField, scale: float = 1.0, step: int = 0, unknown: int = 2 * N) -> None:
     """Compare the velocity at each node with that of the rotation."""
     p = nodes(field)
     known = field.valid.ravel()
     wrong = np.asarray(field.velocity[step]).reshape(-1, 3) - scale * rotation(p)
     error = np.linalg.norm(wrong, axis=-1) / np.linalg.norm(AXIS) / scale
-    assert known.sum() == 13 * N * N - 2 * N  # the southern ends of two turned tiles are unknown
+    # By default the southern ends of two turned tiles are unknown.
+    assert known.sum() == 13 * N * N - unknown
     assert error[known & away_from_corners(p)].max() < AVERAGED
     assert np.median(error[known]) < AVERAGED / 4
 
@@ -57,6 +58,20 @@ def test_components_on_sides_are_turned_at_every_node(*, angles: bool, face: str
     check(field)
     source = "CS and SN" if angles else "XC and YC"
     assert f"turned to east and north by {source}" in str(field.reading)
+
+
+@pytest.mark.parametrize("angles", [True, False])
+@pytest.mark.parametrize(
+    ("sides", "unknown"),
+    [
+        (("eastern", "northern"), 2 * N),  # the southern ends of two tiles that are not turned
+        # Where rows of one tile go on as columns of another one, none has the sides between.
+        (("eastern", "southern"), 10 * N - 3),
+        (("western", "northern"), 10 * N - 2),
+    ],
+)
+def test_components_on_any_sides(*, sides: tuple[str, str], unknown: int, angles: bool) -> None:
+    check(read(llc(N, angles=angles, sides=sides)), unknown=unknown)
 
 
 def test_sides_of_a_conformal_grid_are_exact_with_angles() -> None:

@@ -107,7 +107,7 @@ def faces_of_a_cube(folder: Path) -> Made:
 
 @supported(
     "Models on faces",
-    "LLC tiles of MITgcm and ECCO: components on the western and southern sides of cells",
+    "LLC tiles of MITgcm and ECCO: components on the sides of cells",
     "flowtex.show(ds, globe=True)",
     "averaged, also across the borders of tiles, and turned by `CS` and `SN`, or by positions",
 )
