@@ -21,14 +21,18 @@ from flowtex.sources.maps import (
     shown_positions,
     stretches,
 )
-from flowtex.sources.tripolar import SAME_NODE, cells_across, folded_columns, merged_nodes
+from flowtex.sources.tripolar import (
+    SAME_NODE,
+    cells_across,
+    folded_columns,
+    is_joined,
+    merged_nodes,
+)
 
 #: Greatest width of a tear, as a share of the side across it, where it may begin in a triangle.
 NARROW = 0.6
 OBLIQUE = "+proj=ob_tran"  #: What the definitions of maps have whose poles lie elsewhere.
 HALF_TURN = 180.0  #: In degrees.
-#: Most nodes of a grid with a fold that becomes triangles, across which streaks go on.
-MOST_FOLDED = 500_000
 #: Halvings of a side in the search for the latitude where a map ends.
 HALVINGS = 40
 
@@ -101,7 +105,7 @@ def torn_grid(places: Places, name: str | None) -> MeshMap | None:
     """
     projection = projection_of(places, name)
     mirrored = None
-    if places.a.size <= MOST_FOLDED:
+    if is_joined(places):
         mirrored = folded_columns(places)
     if min(places.a.shape) < 2 or (projection.is_globe and mirrored is None):
         return None

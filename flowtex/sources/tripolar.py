@@ -11,6 +11,8 @@ import scipy
 from flowtex._util.array_types import Floats, Indices
 from flowtex.sources.datasets.coordinates import Places
 
+#: Most nodes of a grid whose fold is joined, as it becomes triangles.
+MOST_FOLDED = 2_000_000
 #: Distance of nodes across a fold, in steps to it, up to which cells go on there.
 NEAR = 1.5
 #: Distance of two nodes, in steps, up to which they are one.
@@ -21,6 +23,11 @@ AGREEING = 0.6
 FEWEST = 16
 
 
+def is_joined(places: Places) -> bool:
+    """Return whether a grid is small enough for its fold to be joined."""
+    return places.a.size <= MOST_FOLDED
+
+
 def folded_columns(places: Places) -> Indices | None:
     """Return the column that each node of the last row meets across a fold; ``None`` without one.
 
@@ -29,9 +36,8 @@ def folded_columns(places: Places) -> Indices | None:
     rows, columns = places.a.shape
     if not places.is_earth or places.is_line or rows < 3 or columns < FEWEST:
         return None
-    p = places.positions
-    last = p[-1]
-    step = last - p[-2]
+    below, last = places.part(np.s_[-2:]).positions
+    step = last - below
     length = np.linalg.norm(step, axis=-1)
     known = np.flatnonzero(np.isfinite(last + step).all(axis=-1) & (length > 0))
     if len(known) < FEWEST:

@@ -30,6 +30,7 @@ from flowtex.field.uncertainty import spread_name
 from flowtex.field.validation import NO_DATA, lacking
 from flowtex.field.vector_names import magnitude_label
 from flowtex.remedies import Remedy
+from flowtex.sources import tripolar
 from flowtex.sources.datasets import labels, select
 from flowtex.sources.datasets.axes import (
     NODES,
@@ -350,6 +351,7 @@ def _placed(flow: Flow, projection: str | None, *, regions: bool) -> tuple[Place
             torn = torn_grid(places, projection)
         if torn is not None:
             return torn, {"triangles": torn.triangles, **_units(flow)}
+        _note_fold(flow)
         on_grid = on_map(places, projection)
         return on_grid, {"periodic": on_grid.periodic, **_units(flow)}
     if not mesh.is_earth:
@@ -360,6 +362,22 @@ def _placed(flow: Flow, projection: str | None, *, regions: bool) -> tuple[Place
         whole = Remedy("globe", value=True, aim="to see all of them,")
         flow.record("surface", text, whole, notable=True)
     return nodes, {"triangles": nodes.triangles, **_units(flow)}
+
+
+def _note_fold(flow: Flow) -> None:
+    """Record that a grid is too large for its fold to be joined."""
+    places = flow.places
+    if tripolar.is_joined(places) or tripolar.folded_columns(places) is None:
+        return
+    most = tripolar.MOST_FOLDED
+    dim = horizontal_dims(flow.pair.u)[0]
+    flow.record(
+        "surface",
+        f"the fold along the last row is not joined, as the grid has {places.a.size:,} nodes: "
+        f"streaks and derivatives end there. That of a part with up to {most:,} is, as of "
+        f"ds.isel({dim}=slice({-(most // places.a.shape[1])}, None))",
+        notable=True,
+    )
 
 
 def _units(flow: Flow) -> dict[str, str]:

@@ -63,6 +63,18 @@ def test_rotation_is_right_at_every_node(name: str, options: dict[str, Any]) -> 
         assert used.sum() > 0.85 * COLUMNS * ROWS
 
 
+def test_fold_of_a_grid_that_is_too_large_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("flowtex.sources.tripolar.MOST_FOLDED", 40 * COLUMNS)
+    ds = mom6(symmetric=False, nominal=False)
+    field = read(ds, {"globe": True})
+    assert field.triangles is None
+    text = str(field.reading)
+    assert "the fold along the last row is not joined" in text
+    assert "ds.isel(yh=slice(-40, None))" in text
+    part = ds.isel(yh=slice(-40, None), yq=slice(-40, None))
+    assert read(part, {"globe": True}).triangles is not None
+
+
 @pytest.mark.parametrize("options", MAPS[:2], ids=["globe", "north"])
 @pytest.mark.parametrize("name", ["MOM6", "NEMO, T, own", "NEMO, F, mesh mask"])
 def test_streaks_cross_the_fold(name: str, options: dict[str, Any]) -> None:
