@@ -37,6 +37,8 @@ FEWEST_TIPS = 500
 TIP_SHARE = 0.05
 #: Fewest nodes that sharp edges connect, on a surface with noise.
 LEAST_CHAIN = 20
+#: The two corners after each corner of a triangle.
+OTHER_CORNERS = np.array([[1, 2, 0], [2, 0, 1]])
 #: Height of a triangle, as a share of the surface's extent, below which its normal is rounding.
 LEAST_HEIGHT = 1e-6
 
@@ -52,11 +54,14 @@ class _Edges(NamedTuple):
 
     @classmethod
     def of(cls, triangles: Indices, beside: Indices) -> _Edges:
-        near, corner = np.nonzero(beside > np.arange(len(triangles))[:, None])
-        far = beside[near, corner]
-        near_corners = (corner + np.array([[1], [2]])) % 3
-        ends = triangles[near, near_corners]
-        first, second, _ = triangles.take(far, axis=0).T
+        flat = triangles.ravel()
+        side = np.flatnonzero(beside.ravel() > np.repeat(np.arange(len(triangles)), 3))
+        near = side // 3
+        far = beside.ravel().take(side)
+        near_corners = OTHER_CORNERS.take(side - 3 * near, axis=1)
+        ends = flat.take(3 * near + near_corners)
+        first = flat.take(3 * far)
+        second = flat.take(3 * far + 1)
         far_corners = np.where(ends == first, 0, np.where(ends == second, 1, 2))
         return cls(near, far, ends, near_corners, far_corners)
 
@@ -68,9 +73,10 @@ class _Edges(NamedTuple):
             near = crosses.take(self.near[block], axis=0)
             cosine[block] = dot(near, crosses.take(self.far[block], axis=0))
         # Two triangles that face alike pass their edge in opposite directions.
-        alike = (self.far_corners[1] - self.far_corners[0]) % 3 == 2
-        cosine = np.where(alike, cosine, -cosine)
-        result = cosine < SHARP_EDGE * area[self.near] * area[self.far]
+        step = self.far_corners[1] - self.far_corners[0]
+        alike = (step == 2) | (step == -1)
+        np.negative(cosine, out=cosine, where=~alike)
+        result = cosine < SHARP_EDGE * area.take(self.near) * area.take(self.far)
         few = np.flatnonzero(result)
         length = norm(points[self.ends[1, few]] - points[self.ends[0, few]])
         least = LEAST_HEIGHT * float(np.ptp(bounds(points), axis=0).max()) * length
@@ -114,12 +120,12 @@ def split_nodes(
     if not bent.any():
         return triangles, np.arange(count)
     around = np.flatnonzero(touching(triangles, bent))
-    near = triangles[around]
+    near = triangles.take(around, axis=0)
     edges = _Edges.of(near, neighbours(points, near))
-    sharp = edges.sharp(points, crosses[around])
+    sharp = edges.sharp(points, crosses.take(around, axis=0))
+    ends = edges.ends.compress(sharp, axis=1)
     at_edge = np.zeros(count, dtype=bool)
-    at_edge[edges.ends[:, sharp]] = True
-    ends = edges.ends[:, sharp]
+    at_edge[ends] = True
     # As many faces as sharp edges meet in a node, and one more on a border.
     is_tip = np.bincount(ends.ravel(), minlength=count) >= NOISE_FACES
     if _in_noise(is_tip, ends, count)[at_edge].all():
