@@ -6,7 +6,8 @@ import difflib
 import math
 import os
 import stat
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import fields
 from pathlib import Path
 from typing import Any
 
@@ -29,6 +30,16 @@ SYNONYMS = {
     **dict.fromkeys(("window_size", "figsize", "width"), "size"),
     **{"alpha": "opacity", "duration": "seconds", "bgcolor": "background", "crs": "projection"},
 }
+#: What is accepted for the fields of a dataclass, by their declared type, and what errors expect.
+ACCEPTED: dict[str, tuple[tuple[type, ...], str]] = {
+    "str": ((str,), "a text"),
+    "bool": ((bool, np.bool_), "True or False"),
+    "str | bool": ((str, bool, np.bool_), "a name, True or False"),
+    "int | str": ((int, np.integer, str), "a whole number or a text"),
+    "float | str": ((int, float, np.number, str), "a number or a text"),
+    "Mapping[str, str]": ((Mapping,), "a mapping of texts by name"),
+    "Mapping[str, Any]": ((Mapping,), "a mapping by name"),
+}
 LONGEST_SHOWN = 100  #: Longest value that is written in a message, in letters.
 
 
@@ -38,6 +49,24 @@ def brief(value: Any) -> str:
     if len(text) <= LONGEST_SHOWN:
         return text
     return f"{text[: LONGEST_SHOWN - 3]}..."
+
+
+def check_types(values: Any) -> None:
+    """Raise a FieldError for a field of a dataclass whose value has not the declared type.
+
+    Fields whose types are not in :data:`ACCEPTED`, and values that are ``None``, are not checked.
+    """
+    for each in fields(values):
+        value = getattr(values, each.name)
+        accepted = ACCEPTED.get(str(each.type).removesuffix(" | None"))
+        if value is None or accepted is None:
+            continue
+        types, expected = accepted
+        if not isinstance(value, types):
+            meaning = each.metadata.get("text", "").replace("``", "'")
+            if meaning:
+                expected = f"{expected}: {meaning}"
+            raise FieldError(f"{each.name} is {brief(value)}; expected {expected}")
 
 
 def is_number(value: Any) -> bool:

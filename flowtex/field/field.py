@@ -18,7 +18,7 @@ from flowtex._util.progress import finish
 from flowtex.errors import notify
 from flowtex.field.checked_nodes import CheckedNodes
 from flowtex.field.derived.quantities import derive, with_derived
-from flowtex.field.earth.projection import Projection
+from flowtex.field.earth.projection import Projection, as_projection
 from flowtex.field.field_arrays import GridArrays, SourceArrays, TriangleArrays
 from flowtex.field.field_data import FieldData
 from flowtex.field.folds import TEXTS, faces_of
@@ -148,7 +148,7 @@ class FlowField(FieldData):
         sign_free: bool = False,
         units: Mapping[str, str] | None = None,
         long_names: Mapping[str, str] | None = None,
-        projection: Projection | None = None,
+        projection: Projection | str | None = None,
     ) -> Self:
         """Make a field from arrays.
 
@@ -198,7 +198,8 @@ class FlowField(FieldData):
         long_names
             Descriptions of scalars for legends, where they differ from their names.
         projection
-            The map from longitude and latitude to the points, for a field of the Earth. It is used
+            The map from longitude and latitude to the points, for a field of the Earth, or its
+            name, such as ``"globe"`` or ``"EPSG:3413"``, as ``from_xarray`` takes it. It is used
             for coordinates of points and for coastlines. On a flat map the speed on the Earth is
             the scalar ``"speed"``, unless ``scalars`` has one.
 
@@ -248,7 +249,7 @@ class FlowField(FieldData):
             sign_free=sign_free,
             units=_mapping(units),
             long_names=_mapping(long_names),
-            projection=projection,
+            projection=as_projection(projection),
         )
         return cls._checked(arrays)
 
@@ -270,7 +271,7 @@ class FlowField(FieldData):
         vectors: str = "",
         units: Mapping[str, str] | None = None,
         long_names: Mapping[str, str] | None = None,
-        projection: Projection | None = None,
+        projection: Projection | str | None = None,
     ) -> Self:
         """Make a field on a surface of triangles from arrays.
 
@@ -336,7 +337,7 @@ class FlowField(FieldData):
             vectors=vectors,
             units=_mapping(units),
             long_names=_mapping(long_names),
-            projection=projection,
+            projection=as_projection(projection),
         )
         return cls._checked(arrays)
 

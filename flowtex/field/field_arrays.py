@@ -12,6 +12,7 @@ from typing import Any, NamedTuple, TypeAlias
 
 from numpy.typing import ArrayLike
 
+from flowtex._util.arguments import check_types
 from flowtex.field.earth.projection import Projection
 from flowtex.remedies import Remedy
 
@@ -109,6 +110,10 @@ class FieldArrays:
     #: Share of the flow normal to the surface from which on a notice says so.
     notable_normal: float = 0.5
     volume_values: Mapping[str, Any] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        """Check the types of what describes the arrays."""
+        check_types(self)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -37,6 +37,7 @@ CURVED_TOLERANCE = 0.1  #: Tolerance in cells for points on a curved surface.
 FLAT_TOLERANCE = 1e-6  #: Tolerance in cells for points on a flat surface.
 EARTH_TOLERANCE = 1e-4  #: Tolerance in cells on the Earth, for inverse projections.
 EARTH_SKEW = 1e-3  #: Greatest deviation from a parallelogram of a bilinear cell on the Earth.
+FARTHEST = 1e100  #: Largest coordinate of a place, whose square is finite.
 MOST_CELLS = 8  #: Most candidate cells for a place.
 ROUNDING = 1e-9  #: Tolerance for rounding, as a share of a cell.
 POLE_LATITUDE = 90 - 1e-6  #: Latitude from which on a node has the longitude of the one beside it.
@@ -177,6 +178,7 @@ class Locator:
         """
         starts = min(STARTS, len(self._drawn))
         at = (points[:, None] - self._shifts).reshape(-1, 3)
+        at = np.clip(at, -FARTHEST, FARTHEST)
         near = np.reshape(self._tree.query(at, k=np.arange(1, starts + 1))[1], (-1, starts))
         best = np.full(len(at), np.inf)
         triangle = np.zeros(len(at), dtype=np.intp)

@@ -13,10 +13,9 @@ from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import Field, dataclass, field, fields
 from typing import Any, TypeVar
 
-import numpy as np
 from numpy.typing import ArrayLike
 
-from flowtex._util.arguments import brief
+from flowtex._util.arguments import brief, check_types
 from flowtex.errors import FieldError
 
 #: Description of all other arguments in docstrings.
@@ -30,16 +29,6 @@ OF_UNITS = ("length_unit", "time_unit", "velocity_unit")
 #: Arguments for meshes and datasets.
 OF_BOTH = ("mask", "components", *OF_UNITS, "uncertainty")
 OF_DATASETS = ("vectors", *OF_EARTH, *OF_BOTH)  #: Arguments for datasets.
-
-#: What is accepted in fields of an option class, by the type that they are declared with.
-ACCEPTED: dict[str, tuple[tuple[type, ...], str]] = {
-    "str | None": ((str,), "a text"),
-    "bool | None": ((bool, np.bool_), "True or False"),
-    "str | bool | None": ((str, bool, np.bool_), "a name, True or False"),
-    "int | str | None": ((int, np.integer, str), "a whole number or a text"),
-    "float | str | None": ((int, float, np.number, str), "a number or a text"),
-    "Mapping[str, Any] | None": ((Mapping,), "a dict"),
-}
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
@@ -61,7 +50,7 @@ class FieldOptions:
     u: str | None = option(None, "Name of the first component; use it instead of ``vectors``.")
     v: str | None = option(None, "Name of the second component.")
     w: str | None = option(None, "Name of the third component; for meshes only.")
-    plane: str | None = option(None, 'Plane of a structured 3D mesh, such as ``"k=20"``.')
+    plane: Any | None = option(None, 'Plane of a structured 3D mesh, such as ``"k=20"``.')
     slice: Any | None = option(
         None,
         'Plane through any volume: ``"x=0.5"``, or a normal and a point, ``"1,1,0 through '
@@ -156,15 +145,7 @@ class FieldOptions:
 
     def __post_init__(self) -> None:
         """Check the types of the values."""
-        for each in fields(self):
-            value = getattr(self, each.name)
-            accepted = ACCEPTED.get(str(each.type))
-            if value is None or accepted is None:
-                continue
-            types, expected = accepted
-            if not isinstance(value, types):
-                meaning = each.metadata["text"].replace("``", "'")
-                raise FieldError(f"{each.name} is {brief(value)}; expected {expected}: {meaning}")
+        check_types(self)
 
     @classmethod
     def of(cls, **given: Any) -> FieldOptions:

@@ -299,9 +299,10 @@ def values_near(field: FieldData, x: float, y: float, z: Any, time: Any) -> Poin
     place = [x, y]
     if z is not None:
         place.append(z)
-    at = np.asarray(place, dtype=float)
-    if not np.isfinite(at).all():
-        raise FieldError(f"the place is {brief(place)}; expected finite numbers")
+    expected = "finite numbers, those of one place"
+    at = checked_array("the place", place, expected=expected)
+    if at.ndim != 1 or not np.isfinite(at).all():
+        raise FieldError(f"the place is {brief(place)}; expected {expected}")
     frame = field.surface.frame
     tolerance = CURVED_TOLERANCE
     if field.projection is None and frame is not None:

@@ -294,9 +294,9 @@ def _threads() -> Iterator[Map]:
         yield run
 
 
-def _parameter(field: FlowField, parameter: str) -> str:
+def _parameter(field: FlowField, parameter: object) -> str:
     """Return what lags measure; a time-varying field is always followed by time."""
-    if parameter not in ("arclength", "time"):
+    if not isinstance(parameter, str) or parameter not in ("arclength", "time"):
         raise FieldError(f'parameter is {brief(parameter)}; expected "arclength" or "time"')
     if field.steady:
         return parameter

@@ -239,6 +239,14 @@ def test_a_point_in_space_is_bilinear_in_a_rectangle() -> None:
     assert raised.at(2.3, 1.2, 4.0) is None
     with pytest.raises(FieldError, match="expected finite numbers"):
         field.at(np.nan, 1.0)
+    with pytest.raises(FieldError, match=r"the place is \['abc', 1\.0\]"):
+        field.at("abc", 1.0)  # type: ignore[arg-type]
+    with pytest.raises(FieldError, match="those of one place"):
+        field.at(np.array([1.0, 2.0]), np.array([1.0, 2.0]))  # type: ignore[arg-type]
+    assert field.at(1e300, 1.0) is None
+    assert raised.at(1e300, 1.0, -1e300) is None
+    with pytest.raises(FieldError, match="the quantity is 3; expected its name"):
+        field.derive(3)  # type: ignore[arg-type]
 
 
 def test_unknown_scalars_say_how_to_get_them() -> None:

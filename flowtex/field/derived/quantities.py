@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 
+from flowtex._util.arguments import brief
 from flowtex._util.array_types import Floats
 from flowtex._util.arrays import norm
 from flowtex.errors import FieldError
@@ -33,6 +34,8 @@ def derive(field: FieldData, name: str, horizon: float | None = None) -> Steps:
     FieldError
         As there.
     """
+    if not isinstance(name, str):
+        raise FieldError(f"the quantity is {brief(name)}; expected its name, such as 'vorticity'")
     if field.sign_free:
         raise FieldError(f"{name} needs a direction, but this field is sign-free")
     check_derivable(field, name)

@@ -122,6 +122,13 @@ def cartopy_map(projection: Any) -> str:
     return f"{text} +R={EARTH_RADIUS:.12g}"
 
 
+def as_projection(wanted: Any) -> Projection | None:
+    """Return a projection as it is, or of a map as :func:`map_name` takes it; ``None`` of none."""
+    if wanted is None or isinstance(wanted, Projection):
+        return wanted
+    return Projection(map_name(wanted))
+
+
 def _fault_of(crs: CRS) -> str:
     """Return why a coordinate system of PROJ is no map in metres; empty if it is one."""
     if not crs.is_projected:

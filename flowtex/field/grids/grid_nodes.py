@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from flowtex._util.array_types import AnyArray, Bools, Floats, Indices
 from flowtex._util.arrays import bounds, rows_where
-from flowtex.errors import FieldError, raise_faults
+from flowtex.errors import raise_faults
 from flowtex.field.checked_nodes import CheckedNodes
 from flowtex.field.field_arrays import GridArrays
 from flowtex.field.grids.grid_surface import GridSurface, known_positions
@@ -212,7 +212,6 @@ def grid_nodes(arrays: GridArrays, own: Checked, *, on_globe: bool) -> CheckedNo
         When shapes or types do not fit together, values exceed the range of computations, or fewer
         nodes than a surface needs have data. The error lists all faults.
     """
-    _check_mapping(own.scalars)
     p, masked_points = as_numbers("points", node_positions(arrays.points))
     v, masked_velocity = as_numbers("velocity", first_step(own.velocity))
     late, in_memory = _late_and_in_memory(own.scalars)
@@ -312,14 +311,6 @@ def _step_count(velocity: Any, first: Floats) -> int:
     if isinstance(velocity, LazySteps) or first.ndim == 4:
         return len(velocity)
     return 1
-
-
-def _check_mapping(scalars: object) -> None:
-    """Check that scalars have names."""
-    if not isinstance(scalars, Mapping):
-        raise FieldError(
-            f"scalars is a {type(scalars).__name__}; expected a mapping of arrays by name"
-        )
 
 
 def _with_gaps_by_name(argument: str, scalars: Mapping[str, Any]) -> dict[str, Floats]:

@@ -10,6 +10,7 @@ from strategies import property_test
 
 from flowtex._util.array_types import Floats
 from flowtex.errors import FieldError
+from flowtex.field import FlowField
 from flowtex.field.earth.projection import EARTH_RADIUS, Projection, map_name
 
 CENTER = (10.0, 50.0)
@@ -151,3 +152,17 @@ def test_projections_of_pyproj_and_cartopy_are_maps() -> None:
 def test_other_projections_are_refused(wanted: object, message: str) -> None:
     with pytest.raises(FieldError, match=message):
         Projection(map_name(wanted))
+
+
+def test_a_field_of_arrays_takes_the_name_of_its_map() -> None:
+    lon, lat = np.meshgrid(np.linspace(0.0, 20.0, 5), np.linspace(40.0, 50.0, 4))
+    globe = Projection("globe")
+    points = globe.positions(lon, lat)
+    flow = globe.vectors(lon, lat, np.full(lon.shape, 3.0), np.full(lon.shape, 4.0))
+    field = FlowField.from_arrays(points, flow, projection="Globe")
+    assert field.projection == globe
+    values = field.at(11.0, 44.0)
+    assert values is not None
+    assert (values.eastward, values.northward) == pytest.approx((3.0, 4.0), rel=1e-2)
+    with pytest.raises(FieldError, match=r"projection is 1\.5; expected one of globe"):
+        FlowField.from_arrays(points, flow, projection=1.5)  # type: ignore[arg-type]
