@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from flowtex.errors import FieldError
 from flowtex.sources.datasets.masks import declared_numbers
 
 if TYPE_CHECKING:
@@ -27,8 +28,9 @@ def with_numbers(ds: xr.Dataset) -> xr.Dataset:
     Raises
     ------
     FieldError
-        When a text is no number.
+        When a text is no number, or xarray has unpacked the values with it.
     """
+    _check_unpacked(ds)
     texts = []
     for key, variable in ds.variables.items():
         if variable.dtype.kind in "iuf":
@@ -43,3 +45,14 @@ def with_numbers(ds: xr.Dataset) -> xr.Dataset:
         else:
             ds[key].attrs[name] = number
     return ds
+
+
+def _check_unpacked(ds: xr.Dataset) -> None:
+    for key, variable in ds.variables.items():
+        for name in NUMBERS:
+            value = variable.encoding.get(name)
+            if isinstance(value, str):
+                raise FieldError(
+                    f"{key} has the {name} {value!r} as text, with which xarray cannot unpack it; "
+                    "open the file with xarray.open_dataset(path, mask_and_scale=False)"
+                )
