@@ -7,6 +7,7 @@ KINDS = (
     *(("xarray", name) for name in ("Dataset", "DataTree", "DataArray")),
     *((library, "DataFrame") for library in ("pandas", "polars")),
     ("geopandas", "GeoDataFrame"),
+    ("pyarrow", "Table"),
     ("_io", "StringIO"),
 )
 

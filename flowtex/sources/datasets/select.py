@@ -56,8 +56,8 @@ MOVING = re.compile(r"velocity|wind|current|drift|momentum_component")
 SPREAD = re.compile(
     r"(^|_)(err|errors?|uncert|uncertainty|stde?v?|stddev|standard_deviation|variance)(_|$)"
 )
-#: Names of a velocity and the letter of its first component, as in ux and vx.
-WITH_LETTER = re.compile(r"^[uv]x\d*m?$")
+#: Names of a velocity and the letter of its first component, as in ux, vx and U_x.
+WITH_LETTER = re.compile(r"^[uv]_?x\d*m?$")
 #: Names that are a velocity even where nothing else says so, without the letter of the component.
 BARE = re.compile(
     r"^(|o|a|bar|vel|velocity|wind|wnd|cur|curr|current|grd|as|gos|water|component|"

@@ -61,9 +61,12 @@ TABLES = {
     ".csv": flow_text.read_columns,
     ".txt": flow_text.read_text,
     ".vec": tables.read_vec,
+    ".tuv": flow_text.read_text,
+    ".raw": flow_text.read_text,
+    ".xy": flow_text.read_text,
 }
 #: Suffixes that files of other content have as well; folders are not searched for them.
-COMMON = (".txt", ".tif", ".tiff")
+COMMON = (".txt", ".raw", ".xy", ".tif", ".tiff")
 #: Suffixes of files that are opened by xarray.
 SUFFIXES = (*NETCDF, *GRIB, *ZARR, *SELAFIN, *JSON, *TABLES, *rasters.SUFFIXES)
 

@@ -1,7 +1,8 @@
 """Text files of particle image velocimetry and of solvers, as tables.
 
 Numbers in columns follow lines of words, of which the last one may name the columns. Known are
-OpenPIV, PIVlab, DaVis, COMSOL, ANSYS Fluent and CFX, and columns x, y, u, v without any header.
+OpenPIV, PIVlab, DaVis, COMSOL, ANSYS Fluent and CFX, CODAR's radars, sampled surfaces of OpenFOAM,
+and columns x, y, u, v without any header.
 """
 
 from __future__ import annotations
@@ -35,6 +36,9 @@ NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eEdD][-+]?\d+)?|[-+]?nan|[-+]?inf"
 SEPARATORS = ("\t", ";", ",", None)
 #: Beginnings of files whose columns are below other lines than their names alone.
 PREAMBLES = re.compile(r"\s*(%|#\s*DaVis|PIVlab|\[(Name|Data)\])", re.IGNORECASE)
+#: The line of CODAR that names the columns, and their names and units here.
+CODAR = re.compile(r"%TableColumnTypes:\s*(.*)")
+OF_CODAR = {"LOND": "lon", "LATD": "lat", "VELU": "u [cm/s]", "VELV": "v [cm/s]"}
 #: Quoted words in the header of DaVis: a quantity, and its unit.
 DAVIS = re.compile(r'"([^"]*)"\s+"([^"]*)"')
 #: One of the times of COMSOL, in a column's name.
@@ -205,7 +209,7 @@ def _rows(path: Path, layout: Layout) -> Iterator[list[str]]:
             if layout.decimal != ".":
                 parts = "\t".join(parts).replace(layout.decimal, ".").split("\t")
             is_row = bool(parts) and all(map(NUMBER.fullmatch, parts))
-            if begun and parts and not is_row and parts[0].startswith("["):
+            if begun and parts and not is_row and parts[0].startswith(("[", "%")):
                 return  # such as the faces below the nodes of CFX
             if not parts or (not begun and not is_row):
                 continue
@@ -262,6 +266,9 @@ def _filled(names: list[str], count: int) -> list[str]:
 
 def _names(layout: Layout) -> list[str]:
     """Return the names in the last line above the numbers; places get the declared unit."""
+    codar = next(filter(None, map(CODAR.match, layout.above)), None)
+    if codar is not None:
+        return [OF_CODAR.get(name, name) for name in codar[1].split()]
     line = layout.above[-1].lstrip("%# ")
     for names in (_parts(line, layout.separator), re.split(r"\s{2,}|\t", line), WORD.findall(line)):
         if len(names) == layout.columns:

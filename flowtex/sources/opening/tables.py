@@ -127,6 +127,7 @@ def of_table(table: Any) -> xr.Dataset:
         )
     x, y = pair
     frame = frame.dropna(subset=[x, y])
+    _check_plane(frame, x, y)
     planar = [c for c in columns if (ACROSS.match(c) or UPWARD.match(c)) and c not in pair]
     frame = frame.drop(columns=planar)  # the same positions on a map
     moving = _trajectories(frame, x, y)
@@ -144,6 +145,22 @@ def of_table(table: Any) -> xr.Dataset:
     for name in axes:
         ds[name].attrs["axis"] = "T" if TIMES.match(name) else "Z"
     return ds
+
+
+def _check_plane(frame: Any, x: str, y: str) -> None:
+    """Raise a FieldError for points of a plane across x or y, as of a cut through a volume."""
+    z = next((name for name in frame.columns if str(name).lower() == "z"), None)
+    if z is None or frame[z].nunique() < 2:
+        return
+    for across, other in ((x, y), (y, x)):
+        if frame[across].nunique() == 1:
+            changes = {across: f"{across}_of_plane", other: x, z: y}
+            raise FieldError(
+                f"all points have {across} = {frame[across].iloc[0]:g}; expected a plane of {x} "
+                f"and {y}. To draw that of {other} and {z}, rename the positions, and name the "
+                f'components along these, as in flowtex.show(df.rename(columns={changes}), u="v", '
+                'v="w")'
+            )
 
 
 def _with_attributes(
@@ -185,6 +202,8 @@ def _plain(table: Any) -> tuple[Any, dict[str, dict[str, str]]]:
     frame = table
     if type(table).__module__.startswith("polars"):
         frame = pandas.DataFrame(table.to_dict(as_series=False))
+    elif hasattr(table, "to_pandas"):  # of Arrow
+        frame = table.to_pandas()
     elif hasattr(table, "to_crs"):
         if not (table.geometry.geom_type == "Point").all():
             kinds = ", ".join(map(str, table.geometry.geom_type.unique()))
@@ -478,6 +497,11 @@ def read_winds(path: Path) -> xr.Dataset:
         raise FieldError(f"it is not valid JSON ({error})") from error
     if isinstance(records, dict) and records.get("type") == "FeatureCollection":
         return of_features(records)
+    if isinstance(records, dict) and "refs" in records:
+        raise FieldError(
+            "these are references of kerchunk to parts of other files; use "
+            f'flowtex.show(xarray.open_dataset("{path.name}", engine="kerchunk"))'
+        )
     if not isinstance(records, list) or not all(isinstance(r, dict) for r in records):
         raise FieldError("it is not a list of records with header and data, as of leaflet-velocity")
     components: dict[str, Any] = {}

@@ -153,6 +153,13 @@ def polars_table(folder: Path) -> Made:
     return {"table": pl.from_pandas(table())}, in_plane(X, Y)
 
 
+@supported(TABLES, "PyArrow: `Table`", "flowtex.show(table)", "as those of pandas", "pyarrow")
+def arrow_table(folder: Path) -> Made:
+    import pyarrow as pa
+
+    return {"table": pa.Table.from_pandas(table())}, in_plane(X, Y)
+
+
 @supported(
     TABLES,
     'pandas: `df.pivot(index="y", columns="x", values=["u", "v"])`',

@@ -2,13 +2,26 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
 import numpy as np
+import pandas as pd
 import pytest
 import xarray as xr
 from form_table import form, variants
-from known_flow import DEGREES, Truth, current, dates, earth, on_earth, wind, without
+from known_flow import (
+    DEGREES,
+    Truth,
+    current,
+    dates,
+    earth,
+    in_plane,
+    on_earth,
+    plane,
+    wind,
+    without,
+)
 from public_forms import Curved, numbers, places_of
 
 from flowtex._util.array_types import Floats
@@ -364,3 +377,35 @@ def number_that_is_a_word() -> Any:
     ds = earth(LON, LAT)
     ds.u.attrs["missing_value"] = "none"
     return ds
+
+
+@form(error="u has the scale_factor '0.001' as text.*mask_and_scale=False")
+def number_that_was_text_when_xarray_unpacked() -> Any:
+    """As of ``xr.open_dataset``, whose values are no numbers any more."""
+    ds = earth(LON, LAT)
+    ds.u.encoding["scale_factor"] = "0.001"
+    return ds
+
+
+@form(error=r'all points have x = 0.5.*df.rename\(columns=.*u="v", v="w"')
+def table_of_a_plane_across_x() -> Any:
+    """OpenFOAM and ParaView: a cut through a volume, whose points have one x."""
+    x, y = (a.ravel() for a in np.meshgrid(np.linspace(0, 3, 13), np.linspace(0, 2, 9)))
+    u, v = plane(x, y)
+    return pd.DataFrame({"x": 0 * x + 0.5, "y": x, "z": y, "u": 0 * u, "v": u, "w": v})
+
+
+@form(options={"u": "v", "v": "w"})
+def table_of_a_plane_across_x_renamed() -> Any:
+    """As the error about it proposes."""
+    x, y = np.linspace(0, 3, 13), np.linspace(0, 2, 9)
+    table = table_of_a_plane_across_x()
+    table = table.rename(columns={"x": "x_of_plane", "y": "x", "z": "y"})
+    return table, in_plane(x, y)
+
+
+@form(error='open_dataset."refs.json", engine="kerchunk"')
+def references_of_kerchunk(folder: Path) -> Any:
+    path = folder / "refs.json"
+    path.write_text('{"version": 1, "refs": {".zgroup": "{}"}}')
+    return path

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from known_flow import Truth, in_plane, plane, without
+from known_flow import Truth, in_plane, on_earth, plane, wind, without
 from supported import Made, supported
 
 X = np.linspace(0.0, 2.0, 13)
@@ -185,3 +185,37 @@ def paraview(folder: Path) -> Made:
     head = ",".join(f'"{name}"' for name in ("p", *names)) + "\n"
     (folder / "paraview.csv").write_text(head + text((x, u, v, 0 * u, x, y, 0 * x), ","))
     return {}, truth()
+
+
+@supported(
+    SOLVERS,
+    "OpenFOAM: sampled surface in raw format, or `.xy`",
+    'flowtex.show("U_cutPlane.raw")',
+    "`x y z U_x U_y U_z`, on a plane of x and y",
+)
+def sampled_by_openfoam(folder: Path) -> Made:
+    x, y, u, v = rows()
+    zero = 0 * x
+    head = f"# U  POINT_DATA {len(x)}\n#  x  y  z  U_x  U_y  U_z\n"
+    (folder / "U_cutPlane.raw").write_text(head + text((x, y, zero, u, v, zero), " "))
+    return {}, truth()
+
+
+@supported(
+    "Points",
+    "CODAR: totals of radars",
+    'flowtex.show("TOTL_2024.tuv")',
+    "`LOND`, `LATD`, and `VELU`, `VELV` in cm/s",
+)
+def totals_of_codar(folder: Path) -> Made:
+    lon, lat = (a.ravel() for a in np.meshgrid(np.arange(-75, -72, 0.25), np.arange(36, 39, 0.25)))
+    u, v = wind(lon, lat)
+    head = (
+        '%CTF: 1.00\n%FileType: LLUV tots "CurrentMap"\n%TableType: LLUV TOT4\n'
+        "%TableColumns: 5\n%TableColumnTypes: LOND LATD VELU VELV VFLG\n%TableStart:\n"
+        "%%   Longitude   Latitude    U comp   V comp  VectorFlag\n"
+        "%%     (deg)       (deg)     (cm/s)   (cm/s)  (GridCode)\n"
+    )
+    table = text((lon, lat, 100 * u, 100 * v, 0 * lon), "  ")
+    (folder / "TOTL_2024.tuv").write_text(head + table + "%TableEnd:\n%%\n%End:\n")
+    return {}, on_earth(lon[None], lat[None])
