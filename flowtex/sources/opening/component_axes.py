@@ -43,6 +43,8 @@ EARTHWARD = ("eastward", "northward", "upward")
 POLARWARD = ("u_r", "u_phi", "w")
 #: Names of the ends of intervals, which are two as well.
 BOUNDS = re.compile(r"bnd|bound", re.IGNORECASE)
+#: Components of a profiler with four beams: E, N and two others, such as the error.
+OF_BEAMS = 4
 #: Attributes that components keep.
 KEPT = ("units", "grid_mapping", "mesh", "location", "description", "GRIB_uvRelativeToGrid")
 
@@ -109,11 +111,17 @@ def _kept(array: xr.DataArray) -> dict[str, Any]:
 
 
 def _labels(array: xr.DataArray, dim: str) -> list[str]:
-    """Return labels along an axis that are texts; none for numbers."""
+    """Return labels along an axis that are texts; none for numbers.
+
+    Of four, as of acoustic profilers, the first two are components.
+    """
     line = array.coords.get(dim)
     if line is None or line.dtype.kind not in "UOT":
         return []
-    return list(map(str, line.values))
+    labels = list(map(str, line.values))
+    if len(labels) == OF_BEAMS:
+        return labels[:2]
+    return labels
 
 
 def _numbers(labels: Sequence[str]) -> list[int]:
@@ -141,12 +149,12 @@ def _axis(array: xr.DataArray) -> str | None:
     if array.dtype.kind not in "fiu" or array.ndim < 2 or BOUNDS.search(str(array.name)):
         return None
     for dim in map(str, array.dims):
-        if array.sizes[dim] not in (2, 3):
+        if array.sizes[dim] not in (2, 3, OF_BEAMS):
             continue
         labels = _labels(array, dim)
         if _numbers(labels) or _are_polar(labels):
             return dim
-        if not labels and AXES.match(dim):
+        if not labels and AXES.match(dim) and array.sizes[dim] != OF_BEAMS:
             return dim
     return None
 

@@ -409,3 +409,24 @@ def references_of_kerchunk(folder: Path) -> Any:
     path = folder / "refs.json"
     path.write_text('{"version": 1, "refs": {".zgroup": "{}"}}')
     return path
+
+
+def beams(dims: tuple[str, str]) -> xr.Dataset:
+    """Return a velocity with components E, N, U1 and U2, as DOLfYN has it of four beams."""
+    ds = earth(LON, LAT).rename(lat=dims[0], lon=dims[1])
+    parts = [ds.u, ds.v, 0 * ds.u, 0 * ds.u]
+    attrs = {"units": "m s-1", "standard_name": "sea_water_velocity"}
+    whole = np.stack([part.values for part in parts])
+    coords = {dim: ds[dim] for dim in dims} | {"dir": ["E", "N", "U1", "U2"]}
+    return xr.Dataset({"vel": (("dir", *dims), whole, attrs)}, coords)
+
+
+@form()
+def components_of_four_beams() -> Any:
+    return beams(("lat", "lon")), on_earth(LON, LAT)
+
+
+@form(error="time and one axis of space")
+def profiler_over_time() -> Any:
+    ds = beams(("range", "time"))
+    return ds.assign_coords(range=("range", LAT, {"units": "m"}), time=dates(LON))

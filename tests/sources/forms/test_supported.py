@@ -11,6 +11,7 @@ import global_files
 import mesh_files
 import model_files
 import point_files
+import product_files
 import pytest
 import raster_files
 import text_forms
@@ -26,6 +27,7 @@ MODULES = (
     mesh_files,
     model_files,
     point_files,
+    product_files,
     raster_files,
     text_forms,
 )
