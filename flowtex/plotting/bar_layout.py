@@ -20,6 +20,7 @@ from vtkmodules.vtkCommonCore import vtkDataArray
 from vtkmodules.vtkRenderingAnnotation import vtkScalarBarActor
 from vtkmodules.vtkRenderingCore import vtkTextProperty, vtkTextRenderer
 
+from flowtex._util.arguments import brief
 from flowtex._util.colours import is_light
 from flowtex.errors import FieldError
 from flowtex.rendering.vtk.frame import FrameSteps, Step
@@ -92,12 +93,19 @@ def checked_bar_options(options: Mapping[str, Any] | None) -> dict[str, Any]:
     Raises
     ------
     FieldError
-        If ``plotter.add_scalar_bar`` has no such argument, or flowtex sets it.
+        If ``plotter.add_scalar_bar`` has no such argument, flowtex sets it, or it is no dict.
     """
     parameters = inspect.signature(pv.Plotter.add_scalar_bar).parameters
     known = [name for name in parameters if name not in ("self", *OWN_ARGUMENTS)]
-    given = {}
-    for name, value in (options or {}).items():
+    given: dict[str, Any] = {}
+    if options is None:
+        return given
+    if not isinstance(options, Mapping):
+        raise FieldError(
+            f"scalar_bar_args is {brief(options)}; expected a dict of arguments of "
+            "plotter.add_scalar_bar, such as {'title': 'speed', 'n_labels': 3}"
+        )
+    for name, value in options.items():
         if name not in known:
             raise FieldError(
                 f"scalar_bar_args has {name!r}; expected some of {', '.join(known)}. The colours "

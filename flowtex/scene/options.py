@@ -275,7 +275,9 @@ class Appearance:
             changes = {**changes, COASTLINES: replace(self.coastlines, shown=switch)}
         if changes.get("norm") is not None:
             changes = {"clim": None, "log_scale": False, **changes}
-        ended = changes.get("clim") is not None or changes.get("log_scale")
+        log_scale = changes.get("log_scale")
+        is_log = isinstance(log_scale, (bool, np.bool_)) and bool(log_scale)
+        ended = changes.get("clim") is not None or is_log
         if ended or {"clim", "scalars"} <= set(changes):
             changes = {"norm": None, **changes}
         if isinstance(self.cmap, str) and self.cmap == default_cmap(self.scalars):

@@ -147,3 +147,12 @@ def test_a_lit_body_has_shadows(plotter: Any) -> None:
     dark, bright = np.percentile(grey[grey < 250], [2, 98])
     assert 1.9 < bright / dark < 2.6
     assert dark > 60
+
+
+def test_values_of_another_type_are_refused_by_name(plotter: Any) -> None:
+    with pytest.raises(FieldError, match="scalar_bar_args is 'title'; expected a dict"):
+        plotter.flowtex.add(gyre(), scalar_bar_args="title")
+    handle = plotter.flowtex.add(gyre())
+    with pytest.raises(FieldError, match=r"log_scale is array\(\[1, 2\]\); expected True"):
+        handle.log_scale = np.array([1, 2])
+    assert handle.log_scale is False
