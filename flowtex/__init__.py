@@ -29,7 +29,8 @@ if TYPE_CHECKING:
     from flowtex.host.show import show
     from flowtex.plotting.handle import FlowHandle
     from flowtex.plotting.offscreen.encoders import MovieError
-    from flowtex.plotting.offscreen.figure import FlowImage, axes, dynamic_map, extent
+    from flowtex.plotting.offscreen.figure import axes, dynamic_map, extent
+    from flowtex.plotting.offscreen.flow_image import FlowImage
     from flowtex.plotting.offscreen.movie import Movie, movie
     from flowtex.plotting.offscreen.plotter import render
     from flowtex.rendering.camera import Camera, CameraError
@@ -91,7 +92,7 @@ _LAZY = {
     "CriticalPoints": "trace.structure.critical_points",
     "DatasetNotice": "sources.notices",
     "FlowHandle": "plotting.handle",
-    "FlowImage": "plotting.offscreen.figure",
+    "FlowImage": "plotting.offscreen.flow_image",
     "FlowWidget": "host.flow_widget",
     "ImageError": "textures.images",
     "Movie": "plotting.offscreen.movie",

@@ -37,7 +37,7 @@ if TYPE_CHECKING:
     from flowtex._util.array_types import Bytes
     from flowtex.host.export import Page
     from flowtex.host.flow_widget import FlowWidget
-    from flowtex.plotting.offscreen.figure import FlowImage
+    from flowtex.plotting.offscreen.flow_image import FlowImage
     from flowtex.plotting.offscreen.movie import Movie
     from flowtex.pyramid import Built
 

@@ -25,7 +25,7 @@ import flowtex
 from flowtex import FieldError, FlowField
 from flowtex._util.array_types import Bytes, Floats
 from flowtex.field.earth.projection import Projection
-from flowtex.plotting.offscreen.figure import FlowImage
+from flowtex.plotting.offscreen.flow_image import FlowImage
 from flowtex.rendering.map_overlay import missing_colour
 
 pytestmark = pytest.mark.usefixtures("opengl")
