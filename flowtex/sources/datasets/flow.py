@@ -87,6 +87,9 @@ CURVED = {
 MODELS = re.compile(r"XLONG|nav_lon|lon_(rho|u|v|psi)\b|glam|[TU]_?LONG?|XC|XG|geolon")
 #: The other directions of components that are taken along the grid.
 EASTWARD = Remedy("components", "earth", "if they are eastward and northward,")
+ALONG = Remedy("components", "grid", "if they are along the grid,")
+#: Grids of GRIB whose rows are turned against parallels.
+OF_MAPS = re.compile(r"lambert|polar_stereographic|rotated|albers|transverse")
 #: The reason where neither names nor positions tell.
 UNKNOWN = "a curvilinear grid, and no name that tells"
 #: Sine of the angle between rows and parallels from which on the directions matter.
@@ -405,11 +408,8 @@ def read_flow(data: Any, options: FieldOptions, record: Record) -> Flow:
     if mesh is None:
         one = ordered(one, record, "coordinates")
         two = ordered(two, record, "align")
-    elif (dims := {horizontal_dims(array) for array in (one, two)}) and len(dims) > 1:
-        raise FieldError(
-            f"{one.name!r} has {', '.join(map(str, one.dims))} and {two.name!r} "
-            f"{', '.join(map(str, two.dims))}; expected both at nodes, or both in faces"
-        )
+    else:
+        _check_places_on_mesh(one, two)
     one, two = align(one, two, choice, record)
     drawn = choose(one, choice, record)
     one = drawn.of(one)
@@ -427,10 +427,43 @@ def read_flow(data: Any, options: FieldOptions, record: Record) -> Flow:
     is_curved = flow.places.is_earth and not flow.places.is_line and mesh is None
     if found.along == "grid" and is_curved:
         flow = _right_handed(flow)
+    if found.along == "earth" and _hides_flags(pair.u):
+        text = (
+            f"{pair.u.name} and {pair.v.name} are taken as eastward and northward, as cfgrib names "
+        )
+        record("components", f"{text}them, though GRIB's flags are not read", ALONG, notable=True)
     if found.why == UNKNOWN and _is_turned(flow):
         text = f"{pair.u.name} and {pair.v.name} are taken along the grid, which is turned against "
         record("components", f"{text}north", EASTWARD, notable=True)
     return _masked(replace(flow, unit=unit, orientation=found), factors, options.mask)
+
+
+def _check_places_on_mesh(u: xr.DataArray, v: xr.DataArray) -> None:
+    """Raise a FieldError for a component at nodes beside one in faces."""
+    if horizontal_dims(u) != horizontal_dims(v):
+        raise FieldError(
+            f"{u.name!r} has {', '.join(map(str, u.dims))} and {v.name!r} "
+            f"{', '.join(map(str, v.dims))}; expected both at nodes, or both in faces"
+        )
+
+
+def _note_directions(flow: Flow, found: Orientation) -> None:
+    """Record directions that the data do not tell."""
+    names = f"{flow.pair.u.name} and {flow.pair.v.name}"
+    if found.along == "earth" and _hides_flags(flow.pair.u):
+        text = (
+            f"{names} are taken as eastward and northward, as cfgrib names them, though the flags "
+        )
+        flow.record("components", f"{text}of GRIB are unknown", ALONG, notable=True)
+    if found.why == UNKNOWN and _is_turned(flow):
+        text = f"{names} are taken along the grid, which is turned against north"
+        flow.record("components", text, EASTWARD, notable=True)
+
+
+def _hides_flags(array: xr.DataArray) -> bool:
+    """Return whether a dataset of cfgrib has a grid of a map, and not whether vectors follow it."""
+    kind = str(array.attrs.get("GRIB_gridType", ""))
+    return OF_MAPS.search(kind) is not None and select.relative_to_grid(array) is None
 
 
 def _in_length_unit(flow: Flow, unit: str | None) -> Flow:

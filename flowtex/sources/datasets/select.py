@@ -83,6 +83,9 @@ AROUND = re.compile(
 #: Names of components along colatitude and longitude.
 SOUTHWARD = re.compile(r"^(u|v|w|vel|velocity)_?(theta|colat\w*)$", re.I)
 AROUND_AXIS = re.compile(r"^(u|v|w|vel|velocity)_?(phi|lon\w*)$", re.I)
+#: The key of GRIB's flags, and the bit of components along the grid.
+GRIB_FLAGS = "resolutionAndComponentFlags"
+ALONG_GRID = 8
 #: Words of descriptions that say along what the components are.
 TO_EARTH = re.compile(r"\b(earth|true|geographic)[- _]?(rotated|relative|north)|to earth\b", re.I)
 TO_GRID = re.compile(r"\bgrid[- _]?(relative|oriented|aligned)|relative to (the )?grid", re.I)
@@ -553,9 +556,9 @@ def _rank(u: xr.DataArray, source: str, rest: str) -> int | None:
 
 def _directions(u: xr.DataArray) -> str:
     """Return ``"grid"`` or ``"earth"`` where attributes or names give directions, else ``""``."""
-    relative = u.attrs.get("GRIB_uvRelativeToGrid")
+    relative = relative_to_grid(u)
     if relative is not None:
-        if int(relative):
+        if relative:
             return "grid"
         return "earth"
     described = " ".join(str(u.attrs.get(name, "")) for name in ("description", "long_name"))
@@ -570,6 +573,20 @@ def _directions(u: xr.DataArray) -> str:
         if any(word in words for word in EARTH):
             return "earth"
     return ""
+
+
+def relative_to_grid(array: xr.DataArray) -> bool | None:
+    """Return whether GRIB says that components are along the grid; ``None`` if it says nothing.
+
+    The key of ecCodes is missing on polar grids, whose flags have it as a bit.
+    """
+    relative = array.attrs.get("GRIB_uvRelativeToGrid")
+    if relative is not None:
+        return bool(int(relative))
+    flags = str(array.attrs.get(f"GRIB_{GRIB_FLAGS}", ""))
+    if flags.isdecimal():
+        return bool(int(flags) & ALONG_GRID)
+    return None
 
 
 def variable(datasets: Sequence[xr.Dataset], name: str) -> xr.DataArray:

@@ -22,7 +22,7 @@ from flowtex.errors import FieldError, import_extra, import_package
 from flowtex.field import units
 from flowtex.sources.datasets import labels
 from flowtex.sources.datasets.axes import TIMES, Choice, as_slice, is_dates
-from flowtex.sources.datasets.select import find_pairs
+from flowtex.sources.datasets.select import GRIB_FLAGS, find_pairs
 from flowtex.sources.inspection.inspect_file import NETCDF, inspect_file
 from flowtex.sources.models.conventions import with_mesh_axes
 from flowtex.sources.models.drifters import as_points
@@ -505,7 +505,8 @@ def open_files(path: Path) -> Datasets:
         if suffix in SELAFIN:
             return Datasets([_selafin(path)])
         if suffix in GRIB:
-            parts = import_cfgrib().open_datasets(str(path), backend_kwargs={"indexpath": ""})
+            read: dict[str, Any] = {"indexpath": "", "read_keys": [GRIB_FLAGS]}
+            parts = import_cfgrib().open_datasets(str(path), backend_kwargs=read)
             return Datasets(parts, _closers(parts))
         options: dict[str, Any] = {"decode_timedelta": False}
         place: Any = path

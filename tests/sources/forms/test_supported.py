@@ -8,6 +8,7 @@ import array_files
 import declared_files
 import direction_files
 import global_files
+import grib_files
 import mesh_files
 import model_files
 import point_files
@@ -24,6 +25,7 @@ MODULES = (
     declared_files,
     direction_files,
     global_files,
+    grib_files,
     mesh_files,
     model_files,
     point_files,
