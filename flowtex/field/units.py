@@ -89,6 +89,7 @@ def without_number(text: str) -> tuple[float, str]:
 
 @cache
 def _unit_of(text: str) -> Any:
+    """Return the unit of pint that a text spells in any usual way, or ``None``."""
     if text.lower() in NONE:
         return None
     for pattern, replacement in SPELLINGS:

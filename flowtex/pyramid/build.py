@@ -427,7 +427,10 @@ def _write_finest(run: _Run, source: NodeSource, workers: Threads) -> None:
 
 
 def _existing_units(run: _Run) -> Iterator[Part | TileTask]:
-    """Yield the parts, and the tiles at a step, for which an array has an object."""
+    """Yield what an earlier run has written: parts of nodes, and tiles at one time step each.
+
+    A name of an array is that of its level and its kind, such as ``"0/velocity"``.
+    """
     for _, array in described(run.about).members(max_depth=None):
         axes: Any = getattr(array.metadata, "dimension_names", None) or ()
         level, _, kind = array.path.partition("/")
@@ -437,10 +440,11 @@ def _existing_units(run: _Run) -> Iterator[Part | TileTask]:
         elif {"j", "i"} <= {*axes}:
             for numbers in run.shards(array.path):
                 if axes[0] == "time":
-                    at = numbers
+                    step, row, column = numbers[:3]
                 else:
-                    at = (0, *numbers)
-                yield Part(int(level), *at[:3])
+                    step = 0
+                    row, column = numbers[:2]
+                yield Part(int(level), step, row, column)
 
 
 def _existing_parts(run: _Run, level: int) -> list[Part]:

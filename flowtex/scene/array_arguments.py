@@ -44,7 +44,11 @@ def takes_arrays(
 
 
 def joins_arrays(first: int) -> Callable[[Function], Function]:
-    """Let a method take arrays, as :func:`takes_arrays` does; its type stays."""
+    """Return a decorator like :func:`takes_arrays`, for methods, which keep their declared type.
+
+    Positional arguments from number ``first`` on that are arrays, two or more of them, reach the
+    method as one tuple.
+    """
 
     def decorate(function: Function) -> Function:
         @functools.wraps(function)

@@ -38,7 +38,19 @@ class NoiseTextures(ImageTextures):
     def of(
         cls, store: SliceStore, resolution: int, seed: int, *, corrected: bool = True
     ) -> NoiseTextures:
-        """Make both textures of a flow, with so many texels along the surface."""
+        """Return random noise and the sizes of its steps, laid over the parameters of a surface.
+
+        Parameters
+        ----------
+        store
+            The trace slices of the flow, which have its surface as well.
+        resolution
+            Number of texels along the longer side of the surface.
+        seed
+            Seed of the random numbers.
+        corrected
+            Whether the noise is even in space; otherwise it is as dense as the cells.
+        """
         field = store.field
         lines = coordinates(field, even=corrected)
         index, cells = texel_places(field, lines, resolution)

@@ -15,7 +15,10 @@ _fields: WeakCache[Any] = WeakCache()
 
 
 def with_scalars(field: Data, name: str | None) -> Data:
-    """Return the field with the scalar of its colours, if that is derived from vectors."""
+    """Return the field with a scalar that is derived from its vectors, such as vorticity.
+
+    A field that has the scalar already, or whose store computes it, is returned unchanged.
+    """
     if name is None or name in ("speed", *field.scalars) or finest_of(field) is not None:
         return field
     if name in DERIVED and field.sign_free:

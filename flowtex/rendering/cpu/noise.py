@@ -272,7 +272,11 @@ class SpaceNoise(Lookup):
         return np.stack(list(octaves), axis=-1)
 
     def blend(self, sums: Sums) -> Floats:
-        """Mix the octaves by the level, and bring the mixture to unit variance."""
+        """Return the mixture (N,) of the sums of both octaves, brought to unit variance.
+
+        The share of the coarser octave is how far the level of detail lies between both. The
+        variance of a sum follows from the correlation of its samples.
+        """
         correlation = sums.neighbours / sums.squares
         spacing = self._values["u_spacing"] * np.exp2(0.5 * self._late)
         mixed = np.zeros(len(correlation))

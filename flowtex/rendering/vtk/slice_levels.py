@@ -54,7 +54,10 @@ def needs_levels(
 
 
 def _farthest(view: ViewState, mesh: pv.PolyData) -> float:
-    """Return how many times as far as the focal point, or as wide, the farthest pixel may be."""
+    """Return the greatest distance of the mesh from the eye, in distances of the focal point.
+
+    A pixel there is as many times as wide. Without perspective it is 1.
+    """
     if not view.eye[3]:  # without perspective
         return 1.0
     ends = np.reshape(mesh.GetBounds(), (3, 2))

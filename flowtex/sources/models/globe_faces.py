@@ -322,7 +322,12 @@ def _borders(last: Floats, before: Floats, p: Floats) -> tuple[Indices, Indices,
 
 
 def _whole_edges(kind: Indices, face: Indices, place: Indices) -> tuple[Indices, Indices, Indices]:
-    """Return borders on which each whole edge meets another one, as most of its cells say."""
+    """Return, for each cell of each edge, the edge, the face and the cell that it meets.
+
+    The arrays are (edges, cells); an edge of the kind 0 is a first column, of the kind 1 a first
+    row, and -1 means that none is met. Cells along one edge may disagree: all of them get the edge
+    that most of them meet, in the order of its cells or the reverse.
+    """
     kinds = np.full(kind.shape, -1)
     faces = np.full(kind.shape, -1)
     places = np.full(kind.shape, -1)
