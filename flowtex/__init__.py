@@ -124,7 +124,7 @@ _OF_PYVISTA = ("axes", "dynamic_map", "movie", "render", "FlowHandle", "FlowImag
 
 
 # The constructors of FlowField find the readers above it here.
-register_readers("flowtex.sources.read_fields")
+register_readers("flowtex.sources.readers")
 
 
 def __getattr__(name: str) -> Any:

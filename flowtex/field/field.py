@@ -8,6 +8,7 @@ package relies on it. Meshes, files and datasets are read by the readers of
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
 
@@ -24,7 +25,7 @@ from flowtex.field.field_data import FieldData
 from flowtex.field.folds import TEXTS, faces_of
 from flowtex.field.grids.grid_nodes import grid_nodes
 from flowtex.field.options import OF_BOTH, OF_DATASETS, OF_MESHES, FieldOptions, accepts_options
-from flowtex.field.plain_arrays import plain_grid
+from flowtex.field.plain_arrays import are_named, plain_grid, refuse_beside_names
 from flowtex.field.quantities import PointValues, values_near, with_speed_on_earth
 from flowtex.field.readers import reader
 from flowtex.field.scalars import Scalars
@@ -157,7 +158,8 @@ class FlowField(FieldData):
         points
             Node positions, (J, I, 2) or (J, I, 3), in any unit of length. Or a tuple of
             coordinates: ``(x, y)`` of a rectilinear grid, (I,) and (J,), or two or three arrays
-            (J, I).
+            (J, I). Or all arrays by name, as in ``dict(x=x, y=y, u=u, v=v)``, an ``.npz`` file or a
+            structured array; arrays at the same nodes become scalars.
         velocity
             Velocity at the nodes, (J, I, 2 or 3), or (T, J, I, 2 or 3) for a time-varying field, in
             ``velocity_unit``; or complex, u + iv, or with the components first. NaN and masked
@@ -232,6 +234,22 @@ class FlowField(FieldData):
         >>> flowtex.FlowField.from_arrays((x, y), v, name="a vortex").shape
         (31, 41)
         """
+        if are_named(points):
+            others = {"velocity": velocity, "valid": valid, "cell_scalars": cell_scalars}
+            labels = {"vectors": vectors, "units": units, "long_names": long_names}
+            refuse_beside_names({**others, **labels})
+            return cls._by_name(
+                points,
+                name,
+                scalars,
+                times=times,
+                periodic=periodic,
+                sign_free=sign_free or None,
+                length_unit=length_unit or None,
+                time_unit=time_unit or None,
+                velocity_unit=velocity_unit or None,
+                projection=projection,
+            )
         plain = plain_grid(points, velocity, components)
         arrays = GridArrays(
             points=plain.points,
@@ -252,6 +270,15 @@ class FlowField(FieldData):
             projection=as_projection(projection),
         )
         return cls._checked(arrays)
+
+    @classmethod
+    def _by_name(
+        cls, arrays: Any, name: str, scalars: Mapping[str, Any] | None, **options: Any
+    ) -> Self:
+        """Return the field of arrays by name."""
+        given = FieldOptions.of(**options)
+        field: Self = reader("arrays")(arrays, given, _mapping(scalars))
+        return replace(field, name=name)
 
     @classmethod
     def from_triangles(

@@ -286,7 +286,9 @@ class FieldData:
         return int(step) % count
 
     def downsample(self, factor: int) -> Self:
-        """Keep every ``factor``-th node along both axes, and the last line of a closed axis.
+        """Return the field at every ``factor``-th node along both axes.
+
+        The last line of a closed axis stays.
 
         Raises
         ------

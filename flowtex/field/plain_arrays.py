@@ -18,7 +18,7 @@ u + iv. Where a shape has two readings, an error says so.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -58,6 +58,32 @@ class PlainFlow:
     length_unit: str = ""
     velocity_unit: str = ""
     scattered: bool = False
+
+
+def are_named(data: Any) -> bool:
+    """Return whether data are arrays by name: a mapping, an ``.npz`` file or a structured array."""
+    is_mapping = isinstance(data, Mapping) or has_files(data)
+    return is_mapping or fields_of(data) is not None
+
+
+def has_files(data: Any) -> bool:
+    """Return whether data are the arrays of an ``.npz`` file, which ``numpy.load`` opens."""
+    return isinstance(data, np.lib.npyio.NpzFile)
+
+
+def fields_of(data: Any) -> tuple[str, ...] | None:
+    """Return the names of the fields of a structured array; ``None`` for other data."""
+    return getattr(getattr(data, "dtype", None), "names", None)
+
+
+def refuse_beside_names(arguments: Mapping[str, Any]) -> None:
+    """Raise a FieldError for the first argument that is given beside arrays by name."""
+    for argument, value in arguments.items():
+        if value is not None and not (isinstance(value, str) and not value):
+            raise FieldError(
+                f"{argument} is given beside arrays by name; pass the arrays one by one, as in "
+                "FlowField.from_arrays(x, y, u, v)"
+            )
 
 
 def plain_grid(points: Any, velocity: Any, components: Sequence[Any]) -> PlainFlow:

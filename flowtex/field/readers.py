@@ -1,4 +1,4 @@
-"""The readers from which fields are made: of meshes, of files and of datasets.
+"""The readers from which fields are made: of arrays by name, meshes, files and datasets.
 
 Readers return fields, so they lie above :class:`flowtex.FlowField` and register here, by which its
 constructors find them. ``flowtex/__init__.py`` names their module, which is loaded when the first
@@ -12,13 +12,13 @@ from collections.abc import Callable
 from typing import Any, Literal
 
 #: What a reader reads.
-Kind = Literal["mesh", "file", "dataset"]
+Kind = Literal["arrays", "mesh", "file", "dataset"]
 
 _modules: list[str] = []
 
 
 def register_readers(module: str) -> None:
-    """Let a module read meshes, files and datasets by the functions in its ``READERS``."""
+    """Let a module read what the keys of its ``READERS`` say, by the functions there."""
     _modules.append(module)
 
 

@@ -43,7 +43,7 @@ from flowtex.rendering.webgl.protocol import Header
 from flowtex.scene.array_arguments import joins_arrays
 from flowtex.scene.fields import read_field, share_field
 from flowtex.scene.options import SPEED, Appearance, AppearanceAttributes, ViewOptions
-from flowtex.scene.scene import NO_IMAGE, Change, Scene, follow, lay_image
+from flowtex.scene.scene import NO_IMAGE, Change, Scene, lay_image, link_scenes
 from flowtex.settings import TABLE, Setting, SettingsError
 from flowtex.textures.images import load_image
 from flowtex.textures.tiles.pyramid import TileKey
@@ -312,7 +312,7 @@ class FlowWidget(AppearanceAttributes, SettingTraits, Displayed):
 
     def _link(self, view: WebView) -> None:
         """Let a second view follow the settings of the first, except its own."""
-        follow(lambda: self.scene, lambda: view.scene, view.own)
+        link_scenes(lambda: self.scene, lambda: view.scene, view.own)
 
     def _start(self) -> None:
         """Send the first headers, and connect the traits with the scene."""

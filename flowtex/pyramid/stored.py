@@ -150,7 +150,13 @@ class StoredPyramid(GridPyramid):
     def tiles(
         self, keys: Sequence[TileKey], steps: Sequence[int]
     ) -> dict[TileKey, TextureSet | None]:
-        """Return the textures of tiles; a PyramidError names data that cannot be read."""
+        """Return the textures of tiles, traced from their nodes.
+
+        Raises
+        ------
+        PyramidError
+            When nodes of a tile are not those of the level above, as parts of two stores would be.
+        """
         made = super().tiles(keys, steps)
         for key, textures in made.items():
             if textures is not None:

@@ -46,8 +46,8 @@ def takes_arrays(
 def joins_arrays(first: int) -> Callable[[Function], Function]:
     """Return a decorator like :func:`takes_arrays`, for methods, which keep their declared type.
 
-    Positional arguments from number ``first`` on that are arrays, two or more of them, reach the
-    method as one tuple.
+    Consecutive positional arguments from number ``first`` on that are arrays, two or more of them,
+    reach the method as one tuple.
     """
 
     def decorate(function: Function) -> Function:

@@ -115,7 +115,7 @@ class Scene:
     def beside(self, changes: Mapping[str, Any], field: FlowField | None = None) -> Scene:
         """Return a second scene of the same field, or of another one, with some changes.
 
-        ``changes`` are fields of :class:`Appearance` and settings. With :func:`follow`, later
+        ``changes`` are fields of :class:`Appearance` and settings. With :func:`link_scenes`, later
         changes of all others apply to both scenes.
 
         Raises
@@ -689,10 +689,23 @@ def _look_beside(first: Scene, changes: dict[str, Any], field: FlowField) -> App
     return first.appearance.changed(**changes)
 
 
-def follow(
+def link_scenes(
     first: Callable[[], Scene], second: Callable[[], Scene], own: Collection[str]
 ) -> Callable[[], None]:
-    """Update a second scene with a first one, except ``own``; return a function that ends this."""
+    """Give a second scene beside a first one the settings and the appearance of that one, for good.
+
+    Parameters
+    ----------
+    first, second
+        Return the scenes that are shown at the moment.
+    own
+        Names of settings and of parts of the appearance in which both differ.
+
+    Returns
+    -------
+    callable
+        Ends the link.
+    """
 
     def follow_setting(name: str, value: Any) -> None:
         if name not in own:
@@ -702,7 +715,7 @@ def follow(
         if affects != "appearance":
             return
         scene = second()
-        if not first()._kept:  # the colours of both fit the present data
+        if not first()._kept:  # the first has dropped its earlier ranges: so does the second
             scene._kept = {}
         names = [*own, "image"]
         if "scalars" in own:

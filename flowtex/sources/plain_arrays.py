@@ -21,11 +21,13 @@ from flowtex.field import units
 from flowtex.field.field import FlowField
 from flowtex.field.matched_labels import matched
 from flowtex.field.options import FieldOptions
-from flowtex.field.plain_arrays import PlainFlow, read_plain
+from flowtex.field.plain_arrays import PlainFlow, are_named, fields_of, has_files, read_plain
 from flowtex.field.validation import with_gaps
 from flowtex.remedies import Remedy, sentence
 from flowtex.sources.datasets.directions import BY_WORD, MEANINGS, MOST_RADIANS
 from flowtex.sources.datasets.directions import in_components as components_of
+from flowtex.sources.datasets.own_values import with_values
+from flowtex.sources.named_dataset import named_dataset
 from flowtex.sources.opening.column_levels import as_array, has_positions
 from flowtex.sources.read_fields import field_of_dataset
 
@@ -51,7 +53,7 @@ TIMES = ("time", "times", "t")  #: Names of times, in small letters.
 
 def is_plain(data: Any) -> bool:
     """Return whether data are arrays, by position or by name, without loading a library."""
-    if isinstance(data, Mapping) or _has_files(data):
+    if isinstance(data, Mapping) or has_files(data):
         return any(is_array(data[name]) for name in data)
     if isinstance(data, tuple):
         return bool(data) and all(map(is_array, data))
@@ -79,8 +81,7 @@ def read_arrays(data: Any, options: FieldOptions, scalars: Mapping[str, Any]) ->
         When an argument is for other data, or names or shapes have no meaning.
     """
     options.refuse(NOT_OF_ARRAYS, "meshes, files and datasets, but these are arrays")
-    is_named = isinstance(data, Mapping) or _has_files(data) or _fields_of(data) is not None
-    if is_named:
+    if are_named(data):
         return _read_named(data, options, scalars)
     if options.vectors is not None:
         raise FieldError(f"vectors is {options.vectors!r}, but the arrays have no names; omit it")
@@ -274,19 +275,9 @@ def _table_of(points: xr.Dataset) -> Any:
     return frame.rename(columns=columns)
 
 
-def _has_files(data: Any) -> bool:
-    """Return whether data are the arrays of an ``.npz`` file, which ``numpy.load`` opens."""
-    return isinstance(data, np.lib.npyio.NpzFile)
-
-
-def _fields_of(data: Any) -> tuple[str, ...] | None:
-    """Return the names of the fields of a structured array; ``None`` for other data."""
-    return getattr(getattr(data, "dtype", None), "names", None)
-
-
 def _read_named(data: Any, options: FieldOptions, scalars: Mapping[str, Any]) -> FlowField:
     """Return the field of arrays by name; other arrays of the same nodes are scalars."""
-    keys = [str(key) for key in _fields_of(data) or data]
+    keys = [str(key) for key in fields_of(data) or data]
     known: dict[str, str] = {}
     for key in keys:
         if is_array(data[key]):
@@ -298,32 +289,61 @@ def _read_named(data: Any, options: FieldOptions, scalars: Mapping[str, Any]) ->
     places = _first(PLACES, known) or lon_lat
     velocity = _velocity_names(options, known)
     if not velocity:
-        raise FieldError(
-            f"the arrays are named {', '.join(keys)}; expected x, y, u and v. Name the components, "
-            "as in vectors='vx,vy', or pass the arrays by position: x, y, u, v"
-        )
+        return _read_by_other_names(data, places, known, options, scalars)
     parts = [data[key] for key in velocity]
     if options.direction is not None:
         parts = list(in_components(*_speed_and_angle(data, velocity, options), options))
         options = _without_angle(options)
     flow = read_plain(_by_position([data[key] for key in places], parts))
     shape = np.shape(flow.velocity)[:-1]
-    steps = shape[:-2]
     nodal = {}
-    times: Any = options.times
-    for name, key in known.items():
-        own_shape = np.shape(data[key])
-        if key in (*places, *velocity):
-            continue
-        # Files of MATLAB have lines as (1, N) or (N, 1).
-        is_line = (np.size(data[key]),) == steps == (max(own_shape, default=0),)
-        if name in TIMES and is_line and times is None:
-            times = host_array(name, data[key]).ravel()
-        elif own_shape in (shape, shape[-2:]):
+    for key in known.values():
+        if key not in (*places, *velocity) and np.shape(data[key]) in (shape, shape[-2:]):
             nodal[key] = data[key]
+    times = _times_of(data, known, options, shape[:-2])
     options = replace(options, vectors=None, times=times)
     on_earth = bool(places) and places == lon_lat
     return _field(flow, options, {**nodal, **scalars}, on_earth=on_earth)
+
+
+def _read_by_other_names(
+    data: Any,
+    places: tuple[str, ...],
+    known: Mapping[str, str],
+    options: FieldOptions,
+    scalars: Mapping[str, Any],
+) -> FlowField:
+    """Return the field of arrays whose components have names that datasets have, such as u10."""
+    ds = None
+    if places:
+        times = _times_of(data, known, options)
+        ds = named_dataset(data, places, known.values(), times)
+    if ds is None:
+        raise FieldError(
+            f"the arrays are named {', '.join(known.values())}; expected x, y, u and v. Name the "
+            "components, as in vectors='vx,vy', or pass the arrays by position: x, y, u, v"
+        )
+    for name, values in scalars.items():
+        ds = with_values(ds, name, values, "scalars")
+    return field_of_dataset(ds, replace(options, times=None, uncertainty=None))
+
+
+def _times_of(
+    data: Any, known: Mapping[str, str], options: FieldOptions, steps: tuple[int, ...] | None = None
+) -> Any:
+    """Return the times that the user gives, or those among the arrays, (T,); ``None`` without any.
+
+    ``steps`` is the shape (T,) that they have, where it is known.
+    """
+    if options.times is not None:
+        return options.times
+    for name, key in known.items():
+        count = np.size(data[key])
+        # Files of MATLAB have lines as (1, N) or (N, 1).
+        is_line = count == max(np.shape(data[key]), default=0)
+        if name in TIMES and is_line and steps in (None, (count,)):
+            return host_array(name, data[key]).ravel()
+    return None
 
 
 def _frame_of(data: Any, names: list[str]) -> Any:

@@ -1,11 +1,8 @@
-"""Fields of meshes, files and datasets: the readers of the constructors of a field.
-
-The package registers this module in :mod:`flowtex.field.readers`.
-"""
+"""Fields of meshes, files and datasets."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any, cast
@@ -14,7 +11,6 @@ from flowtex.errors import require_pyvista
 from flowtex.field import FlowField
 from flowtex.field.field_arrays import SourceArrays
 from flowtex.field.options import FieldOptions
-from flowtex.field.readers import Kind
 from flowtex.field.uncertainty import UNCERTAINTY, with_uncertainty
 from flowtex.field.validation import with_gaps
 from flowtex.sources.datasets.own_values import with_values
@@ -53,11 +49,3 @@ def field_of_dataset(data: Any, options: FieldOptions, *, name: str = "") -> Flo
             options = replace(options, uncertainty=UNCERTAINTY)
     field = FlowField.of(cast("SourceArrays", read_datasets(data, options, name=name)))
     return with_uncertainty(field, options.uncertainty)
-
-
-#: The functions by what they read.
-READERS: dict[Kind, Callable[..., FlowField]] = {
-    "mesh": field_of_mesh,
-    "file": field_of_file,
-    "dataset": field_of_dataset,
-}

@@ -57,7 +57,7 @@ def reprojected(field: FlowField, name: str) -> FlowField:
 def _of_grid(field: FlowField, name: str) -> FlowField:
     lon, lat = _lonlat(field)
     lon = _with_meridians(lon, lat)
-    lines = _lines(lon, lat)
+    lines = _meridians_and_parallels(lon, lat)
     columns = np.arange(lon.shape[1])
     rows = np.arange(lon.shape[0])
     if lines is None:
@@ -243,10 +243,11 @@ def _with_meridians(lon: Floats, lat: Floats) -> Floats:
     return result
 
 
-def _lines(lon: Floats, lat: Floats) -> tuple[Floats, Floats] | None:
+def _meridians_and_parallels(lon: Floats, lat: Floats) -> tuple[Floats, Floats] | None:
     """Return the longitude of each column and the latitude of each row of positions, (J, I) each.
 
-    ``None`` if longitudes differ within a column, or latitudes within a row.
+    A grid with such lines is projected line by line. ``None`` if longitudes differ within a column,
+    or latitudes within a row.
     """
     has_meridian: Bools = np.isfinite(lon) & (np.abs(lat) < POLE_LATITUDE)
     columns = np.full(lon.shape[1], np.nan)

@@ -38,7 +38,9 @@ class NoiseTextures(ImageTextures):
     def of(
         cls, store: SliceStore, resolution: int, seed: int, *, corrected: bool = True
     ) -> NoiseTextures:
-        """Return random noise and the sizes of its steps, laid over the parameters of a surface.
+        """Return noise laid over the parameters of a surface, for ``noise="texture"``.
+
+        Its step size is, for each texel, the lag in which the flow crosses it.
 
         Parameters
         ----------

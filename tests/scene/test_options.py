@@ -25,7 +25,7 @@ from flowtex.scene.options import (
     Options,
     ViewOptions,
 )
-from flowtex.scene.scene import Scene, follow, lay_image, make_scenes
+from flowtex.scene.scene import Scene, lay_image, link_scenes, make_scenes
 
 
 def test_each_argument_goes_where_it_belongs() -> None:
@@ -69,7 +69,7 @@ def test_a_second_view_follows_the_first_in_what_is_not_its_own() -> None:
     second = first.beside(own)
     assert second.scalar_limits == second.scalar_range("vorticity") != first.scalar_limits
     assert (second.settings.noise, second.appearance.cmap) == ("procedural", "magma")
-    end = follow(lambda: first, lambda: second, own)
+    end = link_scenes(lambda: first, lambda: second, own)
     first.settings.update(samples=9, noise="procedural")
     first.appearance = replace(first.appearance, cmap="gray", clim=(0.0, 1.0), log_scale=False)
     assert (second.settings.samples, second.settings.noise) == (9, "procedural")

@@ -61,6 +61,56 @@ def test_named_arrays_are_read_by_their_names(arrays: dict[str, Any]) -> None:
     assert np.array_equal(field.scalars["p"][0], U * V)
 
 
+@pytest.mark.parametrize("arrays", NAMED.values(), ids=NAMED)
+def test_constructor_reads_named_arrays_too(arrays: dict[str, Any]) -> None:
+    field = FlowField.from_arrays(arrays, name="named", scalars={"p": U * V}, velocity_unit="m/s")
+    check(field)
+    assert field.name == "named"
+    np.testing.assert_array_equal(field.scalars["p"][0], U * V)
+
+
+@pytest.mark.parametrize("argument", ["velocity", "valid", "vectors", "units"])
+def test_constructor_refuses_what_names_tell(argument: str) -> None:
+    value: Any = U > 0
+    if argument in ("vectors", "units"):
+        value = "B"
+    with pytest.raises(FieldError, match=f"{argument} is given beside arrays by name"):
+        FlowField.from_arrays(NAMED["lines"], **{argument: value})
+
+
+@quiet
+@pytest.mark.parametrize("lines", [(LINE_X, LINE_Y), (X, Y), (LINE_X[None], LINE_Y[:, None])])
+@pytest.mark.parametrize(
+    "names",
+    [("Ve", "Vn"), ("u10", "v10"), ("V_x", "V_y"), ("vel.x", "vel.y"), ("U.east", "U.north")],
+    ids=" ".join,
+)
+def test_components_have_the_names_that_datasets_have(
+    names: tuple[str, str], lines: tuple[Any, Any]
+) -> None:
+    arrays = {"x": lines[0], "y": lines[1], names[0]: U, names[1]: V, "time": [3.0]}
+    field = read(arrays, scalars=U * V)
+    check(field)
+    np.testing.assert_array_equal(field.scalars[DATA][0], U * V)
+    series = {**arrays, names[0]: np.stack([U, 2 * U]), names[1]: np.stack([V, 2 * V])}
+    field = read({**series, "time": [3.0, 5.0]})
+    check(field)
+    assert field.times.tolist() == [3.0, 5.0]
+    np.testing.assert_allclose(field.velocity[1], 2 * field.velocity[0])
+
+
+@quiet
+def test_speed_and_direction_are_known_by_their_names() -> None:
+    speed = np.hypot(ZONAL, MERIDIONAL)
+    direction = np.degrees(np.arctan2(-ZONAL, -MERIDIONAL)) % 360
+    arrays = {"lon": LON, "lat": LAT, "speed": speed, "wind_direction": direction}
+    expected = read({"lon": LON, "lat": LAT, "u": ZONAL, "v": MERIDIONAL})
+    np.testing.assert_allclose(read(arrays).velocity, expected.velocity, atol=1e-9)
+    arrays["angle"] = arrays.pop("wind_direction")
+    with pytest.raises(FieldError, match='vectors="speed", direction="angle"'):
+        read(arrays)
+
+
 def test_chosen_names_are_taken() -> None:
     arrays = {"x": X, "y": Y, "u": 0 * U, "v": 0 * V, "a": U, "b": V}
     check(read(arrays, vectors="a,b"))

@@ -29,7 +29,7 @@ from flowtex.rendering.camera import Camera, apply_camera, face_alike
 from flowtex.rendering.vtk.area import PicturePart
 from flowtex.rendering.vtk.passes import DeferredPasses
 from flowtex.scene.options import Options
-from flowtex.scene.scene import Scene, follow, make_scenes
+from flowtex.scene.scene import Scene, link_scenes, make_scenes
 from flowtex.settings import Settings
 from flowtex.textures.images import as_image, averaged
 
@@ -230,7 +230,9 @@ class Viewport:
         self.differences = changes
         if len(panes) > 1:
             left, right = panes
-            self._stop_following = follow(lambda: left.scene, lambda: right.scene, self.differences)
+            self._stop_following = link_scenes(
+                lambda: left.scene, lambda: right.scene, self.differences
+            )
             self.clock = self.handle.clock
         self.resize(*self.size)
 

@@ -177,9 +177,12 @@ def derived_unit(name: str, field: FieldData) -> str:
 def with_vector_scalar(field: Data, name: str) -> Data:
     """Return a field with the magnitude or a component of its vectors among its scalars.
 
-    Known are the drawn vectors by their name, their components also as in ``speed_x``, and other
-    vectors of the mesh. For any other name the field is returned as it is.
+    The ``name`` of vectors of the mesh is that of their magnitude, as in ``"U"``, and with a letter
+    that of a component, as in ``"U_x"``; ``"speed_x"`` is a component of the drawn vectors. For any
+    other name, and on a map, the field is returned as it is.
     """
+    if name in field.scalars or field.projection is not None:
+        return field
     own = field.vectors or UNNAMED
     base, _, letter = name.rpartition("_")
     if base == "speed":
@@ -189,8 +192,6 @@ def with_vector_scalar(field: Data, name: str) -> Data:
     unit = ""
     steps: Steps
     on_cells: tuple[str, ...] = ()
-    if name in field.scalars or field.projection is not None:
-        return field
     if name == own or (base == own and letter and letter in LETTERS):
         axis = LETTERS.find(letter)
         long_name = f"{own}_{letter}"

@@ -101,7 +101,7 @@ class Pole:
         return np.asarray(line + (turns + past) * self.cells, dtype=around.dtype)
 
     def place(self, position: Floats) -> Floats:
-        """Return points of the flat disc around the pole, (2, N) in cells.
+        """Return points of the plane at the pole, (2, N) in cells.
 
         They lie where positions (2, N) in index space, (i, j) before the pole, do on the surface.
         """
@@ -115,7 +115,7 @@ class Pole:
         return np.stack([length * np.cos(angle), length * np.sin(angle)])
 
     def index(self, place: Floats) -> Floats:
-        """Return positions (2, N) in index space of points of the disc of :meth:`place`."""
+        """Return positions (2, N) in index space of points of the plane at the pole."""
         angle = np.arctan2(place[1], place[0])
         angle += 2 * np.pi * np.ceil((self._angles[0] - angle) / (2 * np.pi))
         if self._even:

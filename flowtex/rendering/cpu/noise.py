@@ -275,15 +275,16 @@ class SpaceNoise(Lookup):
         """Return the mixture (N,) of the sums of both octaves, brought to unit variance.
 
         The share of the coarser octave is how far the level of detail lies between both. The
-        variance of a sum follows from the correlation of its samples.
+        variance of a sum follows from the spacing of its samples in grains and from the overlap of
+        neighbouring weights.
         """
-        correlation = sums.neighbours / sums.squares
+        overlap = sums.neighbours / sums.squares
         spacing = self._values["u_spacing"] * np.exp2(0.5 * self._late)
-        mixed = np.zeros(len(correlation))
-        variance = np.zeros(len(correlation))
+        mixed = np.zeros(len(overlap))
+        variance = np.zeros(len(overlap))
         for k, w in enumerate((1.0 - self._late, self._late)):
             mixed += w * sums.values[:, k]
-            variance += w * w * shared(spacing * 0.5 ** (k / 2), correlation)
+            variance += w * w * shared(spacing * 0.5 ** (k / 2), overlap)
         return np.asarray(mixed / np.sqrt(sums.squares * variance))
 
 

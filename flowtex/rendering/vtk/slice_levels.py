@@ -50,13 +50,14 @@ def needs_levels(
         return True
     if view.pixel > FINEST_CELLS * textures.cell:  # most cells are as large, and soon found
         return True
-    return view.pixel * _farthest(view, mesh) > FINEST_CELLS * surface.least_extent
+    return view.pixel * _greatest_depth(view, mesh) > FINEST_CELLS * surface.least_extent
 
 
-def _farthest(view: ViewState, mesh: pv.PolyData) -> float:
-    """Return the greatest distance of the mesh from the eye, in distances of the focal point.
+def _greatest_depth(view: ViewState, mesh: pv.PolyData) -> float:
+    """Return the greatest depth of the mesh's bounds, in depths of the focal point.
 
-    A pixel there is as many times as wide. Without perspective it is 1.
+    Depth is along the line of sight. A pixel there is as many times as wide. Without perspective it
+    is 1.
     """
     if not view.eye[3]:  # without perspective
         return 1.0

@@ -53,7 +53,7 @@ def with_lonlat(ds: xr.Dataset) -> xr.Dataset:
     colatitudes = {name: line for name, line in lines.items() if COLATITUDES.match(name)}
     changed = {}
     for name, line in colatitudes.items():
-        degrees = _degrees(line, MOST_RADIANS)
+        degrees = _angles_in_degrees(line, MOST_RADIANS)
         low = float(degrees.min())
         high = float(degrees.max())
         if low < -1e-3 or high > 180.001:
@@ -66,16 +66,19 @@ def with_lonlat(ds: xr.Dataset) -> xr.Dataset:
     for name, line in lines.items():
         if colatitudes and LONGITUDES.match(name):
             attrs = {"units": "degrees_east", "standard_name": "longitude", "axis": "X"}
-            changed[name] = (name, _degrees(line, 2 * MOST_RADIANS), attrs)
+            changed[name] = (name, _angles_in_degrees(line, 2 * MOST_RADIANS), attrs)
     return ds.assign_coords(changed)
 
 
-def _degrees(line: xr.DataArray, most: float) -> Floats:
-    """Return angles in degrees; without a unit they are radians up to a greatest angle."""
-    values = np.asarray(values_in(line), dtype=float)
-    factor = units.factor(str(line.attrs.get("units", "")), "degree")
+def _angles_in_degrees(coordinate: xr.DataArray, most_radians: float) -> Floats:
+    """Return a colatitude or longitude in degrees, (N,).
+
+    Without a unit, values up to ``most_radians`` are radians, and others degrees.
+    """
+    values = np.asarray(values_in(coordinate), dtype=float)
+    factor = units.factor(str(coordinate.attrs.get("units", "")), "degree")
     if factor is None:
         factor = 1.0
-        if np.abs(values).max(initial=0.0) <= most:
+        if np.abs(values).max(initial=0.0) <= most_radians:
             factor = 180.0 / np.pi
     return np.asarray(values * factor)

@@ -60,12 +60,19 @@ SPREAD = re.compile(
 WITH_LETTER = re.compile(r"^[uv]_?x\d*m?$")
 #: Names that are a velocity even where nothing else says so, without the letter of the component.
 BARE = re.compile(
-    r"^(|o|a|bar|vel|velocity|wind|wnd|cur|curr|current|grd|as|gos|water|component|"
+    r"^(|o|a|u|v|bar|vel|velocity|wind|wnd|cur|curr|current|grd|as|gos|water|component|"
     r"eulerian_current_velocity|.*(velocity|wind|current).*|"
     r"hvel|dahv|horizontalvel|depthaveragevel|nod|ureconstruct)\d*m?$"
 )
-#: Names of components in models that do not follow any pattern.
-KNOWN_NAMES = {"vozocrtx": "vomecrty", "sozocrtx": "somecrty", "uu": "vv"}
+#: Names of components that do not follow any pattern: the word for the first, and the second.
+KNOWN_NAMES = {
+    "vozocrtx": ("x", "vomecrty"),
+    "sozocrtx": ("x", "somecrty"),
+    "uu": ("x", "vv"),
+    "ve": ("east", "vn"),
+    "v_e": ("east", "v_n"),
+    "vel_e": ("east", "vel_n"),
+}
 #: Words for the components in a vertical plane.
 SECTION_PARTNERS = {"x": "z", "u": "w"}
 #: Modifiers of CF's standard names, which make other variables of these.
@@ -481,7 +488,8 @@ def _partners(
 ) -> Iterator[tuple[str, str, str]]:
     """Yield the word of the component, the text without it, and the text of the partner."""
     if source == "name" and text in KNOWN_NAMES and partners is PARTNERS:
-        yield "x", "velocity", KNOWN_NAMES[text]
+        word, partner = KNOWN_NAMES[text]
+        yield word, "velocity", partner
     for word, other in partners.items():
         # A letter may be part of a name, as in uo, u10, UVEL or VSDX; in a text it is a word.
         if source == "name":
