@@ -27,6 +27,7 @@ from flowtex.sources.datasets.values import Regions
 from flowtex.sources.inspection.foam_files import ENDINGS, case_of
 from flowtex.sources.inspection.inspect_file import inspect_file
 from flowtex.sources.inspection.other_programs import advice_of
+from flowtex.sources.inspection.tecplot_files import is_tecplot_text
 from flowtex.sources.meshes import meshio_files, parts, plot3d, separate, series
 from flowtex.sources.meshes.amr import amr_blocks
 from flowtex.sources.meshes.read_meshes import choose, read_meshes
@@ -86,6 +87,8 @@ def open_reader(file: Path) -> Any:
         if in_pieces:
             return DecomposedReader(str(marker))
         return pv.POpenFOAMReader(str(marker))
+    if is_tecplot_text(file):
+        return pv.TecplotReader(str(file))
     reader: Any = pv.get_reader(str(file))
     if isinstance(reader, pv.CGNSReader):
         return _CGNSReader(reader)

@@ -20,6 +20,7 @@ from flowtex.sources.inspection.foam_files import case_of, check_foam
 from flowtex.sources.inspection.obj_files import check_obj
 from flowtex.sources.inspection.ply_files import check_ply
 from flowtex.sources.inspection.stl_files import check_stl
+from flowtex.sources.inspection.tecplot_files import check_tecplot, is_tecplot_text
 from flowtex.sources.inspection.vtk_files import Data
 from flowtex.sources.inspection.vtk_legacy import check_vtk_legacy
 from flowtex.sources.reader_errors import check_count
@@ -145,6 +146,8 @@ def _inspect(path: Path, data: Data, *, whole: bool, is_piece: bool) -> tuple[Pa
         check_grib(data)
     if suffix == ".vtk":
         check_vtk_legacy(data)
+    if is_tecplot_text(path):
+        check_tecplot(data)
     if suffix == ".ply":
         check_ply(data)
     if suffix == ".obj":

@@ -5,6 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from flowtex.sources.inspection.tecplot_files import is_tecplot_text
+
 if TYPE_CHECKING:
     import h5py
 
@@ -87,6 +89,8 @@ def advice_of(path: Path) -> str:
         One or two sentences with a line of code to type.
     """
     suffix = path.suffix.lower()
+    if is_tecplot_text(path):
+        return ""
     if suffix in HDF5:
         return _of_hdf5(path)
     if suffix in IMAGES:

@@ -13,8 +13,8 @@ from flowtex.errors import FieldError, import_package
 if TYPE_CHECKING:
     import pyvista as pv
 
-#: Endings of files that only meshio reads: Gmsh, SALOME, MOAB, SU2, Medit, Nastran, AVS, Tecplot.
-SUFFIXES = (".msh", ".med", ".h5m", ".su2", ".mesh", ".bdf", ".nas", ".avs", ".tec")
+#: Endings of files that only meshio reads: Gmsh, SALOME, MOAB, SU2, Medit, Nastran, AVS.
+SUFFIXES = (".msh", ".med", ".h5m", ".su2", ".mesh", ".bdf", ".nas", ".avs")
 #: The ending of AVS UCD, which PyVista reads, and of Abaqus.
 ABAQUS_SUFFIX = ".inp"
 #: First character of files of Abaqus, where AVS has a number or a comment.

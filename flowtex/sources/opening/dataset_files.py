@@ -66,9 +66,9 @@ TABLES = {
     ".xy": flow_text.read_text,
 }
 #: Suffixes that files of other content have as well; folders are not searched for them.
-COMMON = (".txt", ".raw", ".xy", ".tif", ".tiff")
+COMMON = (".txt", ".raw", ".xy", ".tif", ".tiff", ".asc")
 #: Suffixes of files that are opened by xarray.
-SUFFIXES = (*NETCDF, *GRIB, *ZARR, *SELAFIN, *JSON, *TABLES, *rasters.SUFFIXES)
+SUFFIXES = (*NETCDF, *GRIB, *ZARR, *SELAFIN, *JSON, *TABLES, *rasters.DRIVERS)
 
 
 class Datasets(list["xr.Dataset"]):
@@ -500,7 +500,7 @@ def open_files(path: Path) -> Datasets:
             return Datasets([tables.read_winds(path)])
         if suffix in TABLES:
             return Datasets([TABLES[suffix](path)])
-        if suffix in rasters.SUFFIXES:
+        if suffix in rasters.DRIVERS:
             return Datasets([rasters.read_raster(path)])
         if suffix in SELAFIN:
             return Datasets([_selafin(path)])

@@ -1,7 +1,11 @@
-"""Rasters such as GeoTIFF as datasets: two bands of one file, or one band of each of two files."""
+"""Rasters as datasets: two bands of one file, or one band of each of two files.
+
+They are GeoTIFF, or grids of Esri in text.
+"""
 
 from __future__ import annotations
 
+import gc
 import re
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -13,7 +17,9 @@ from flowtex.sources.notices import NOTE
 if TYPE_CHECKING:
     import xarray as xr
 
-SUFFIXES = (".tif", ".tiff")
+#: Drivers of GDAL by the ending of a file: of GeoTIFF, and of the text grids of Esri.
+DRIVERS = {".tif": "GTiff", ".tiff": "GTiff", ".asc": "AAIGrid"}
+GRID_BEGIN = b"ncols"  #: The first word of a grid of Esri.
 #: Parts of names of files that tell the components, as in ``greenland_vx_v1.tif``.
 COMPONENT = re.compile(r"(?<![a-z])(v[xy]|u[xy]|[uv]o?)(?![a-z0-9])", re.IGNORECASE)
 
@@ -37,10 +43,16 @@ def read_raster(path: Path) -> xr.Dataset:
     """
     rioxarray = import_package("rioxarray", "a raster such as GeoTIFF")
     # Other formats, which GDAL would know by their content, name further files and addresses.
-    options = {"band_as_variable": True, "mask_and_scale": True, "driver": "GTiff"}
+    driver = DRIVERS[path.suffix.lower()]
+    if driver == "AAIGrid":
+        _check_grid(path)
+    options = {"band_as_variable": True, "mask_and_scale": True, "driver": driver}
     with rioxarray.open_rasterio(path, **options) as bands:
         check_memory(bands.nbytes, "the raster")
         ds: xr.Dataset = bands.load()
+    del bands
+    # Files of rasterio are in a cycle; one that is left when Python ends prints an error.
+    gc.collect()
     if ds.rio.transform().is_identity:
         raise FieldError(
             "the raster has no positions, as images have none; expected a GeoTIFF. The flow "
@@ -58,6 +70,17 @@ def read_raster(path: Path) -> xr.Dataset:
         if name in ds:  # files of glaciers often have no unit, by which a velocity is known
             ds[name].attrs.setdefault("long_name", f"{name[1]} velocity")
     return ds
+
+
+def _check_grid(path: Path) -> None:
+    """Raise a FieldError unless a file is text that begins as those of Esri do."""
+    with path.open("rb") as file:
+        head = file.read(len(GRID_BEGIN)).lower()
+    if head != GRID_BEGIN:
+        raise FieldError(
+            f"the file begins with {head!r}; expected a grid of Esri, which begins with ncols. For "
+            "a table of columns use the ending .txt"
+        )
 
 
 def _names(ds: xr.Dataset, path: Path) -> dict[str, str]:

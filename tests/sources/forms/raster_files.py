@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 import pyproj
-from known_flow import Truth, wind
+from known_flow import Truth, in_plane, plane, wind
 from supported import Made, supported
 
 KIND = "Rasters"
@@ -87,3 +87,20 @@ def unnamed_bands(folder: Path) -> Made:
     vx, vy, truth = glacier()
     write(folder / "bands.tif", [vx, vy], ())
     return {}, truth
+
+
+@supported(
+    KIND,
+    "grids of Esri, one for each component",
+    'flowtex.show(["current_u.asc", "current_v.asc"])',
+    "names of files tell the components; in the shell `flowtex show current_u.asc current_v.asc`",
+    "rioxarray",
+)
+def grids_of_esri(folder: Path) -> Made:
+    x, y = 0.05 + 0.1 * np.arange(10), 0.15 + 0.1 * np.arange(8)
+    across, upward = np.meshgrid(x, y)
+    for name, values in zip("uv", plane(across, upward), strict=True):
+        head = "ncols 10\nnrows 8\nxllcorner 0\nyllcorner 0.1\ncellsize 0.1\nNODATA_value -99\n"
+        rows = [" ".join(f"{value:.9g}" for value in row) for row in values[::-1]]
+        (folder / f"current_{name}.asc").write_text(head + "\n".join(rows) + "\n")
+    return {}, in_plane(x, y)
