@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 
 import numpy as np
@@ -112,10 +113,11 @@ def dot(one: Floats, other: Floats) -> Floats:
 
     NumPy's sums over few components are slow, and threads of a matrix product wait for each other.
     """
-    if one.shape != other.shape or one.ndim != 2 or len(one) <= BLOCK_NODES:
+    shape = one.shape[:-1]
+    if one.shape != other.shape or math.prod(shape) <= BLOCK_NODES:
         return _dot(one, other)
-    result = np.empty(len(one), np.result_type(one, other))
-    for block in row_blocks(len(one), 1):
+    result = np.empty(shape, np.result_type(one, other))
+    for block in row_blocks(len(one), math.prod(shape[1:])):
         result[block] = _dot(one[block], other[block])
     return result
 

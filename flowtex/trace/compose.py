@@ -17,7 +17,7 @@ those of neighbours pass it on either side; few of them are, by :mod:`flowtex.tr
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from functools import partial
 from typing import Any, NamedTuple, Protocol, TypeVar
@@ -27,6 +27,7 @@ import numpy as np
 from flowtex._util.array_types import AnyArray, Bools, Complexes, Floats, Floats32, Indices
 from flowtex._util.progress import check
 from flowtex.field import FlowField
+from flowtex.trace.integrate import Inside
 from flowtex.trace.pole_rings import PoleRings
 from flowtex.trace.sampler import Corners, NodeGrid
 
@@ -48,6 +49,7 @@ ERROR_CHANGE = 1 / 64
 ROUGH = 4
 #: Lags closer to a slice than this share are taken from it.
 LAG_ROUNDING = np.float32(1e-4)
+NO_PATHS = np.empty(0, np.intp)  #: Numbers of none.
 
 
 A = TypeVar("A")
@@ -63,13 +65,11 @@ class Map(Protocol):
         """Return the results in order."""
 
 
-#: Returns whether paths are followed at positions (2, n), (n,).
-Within = Callable[[Floats], Bools]
-#: Follows paths from positions (2, n), by lags (n,), from time steps (n,), as long as ``Within``:
-#: displacements (2, n), lags covered, lags at which they end, infinite if they do not, and which
-#: paths circle in one place.
+#: Follows paths from positions (2, n), by lags (n,), from time steps (n,), in directions (n,), as
+#: long as they are inside: displacements (2, n), lags covered, lags at which they end, infinite if
+#: they do not, and which paths circle in one place.
 Integrate = Callable[
-    [Floats32, Floats, Indices, Within | None], tuple[Floats32, Floats, Floats, Bools]
+    [Floats32, Floats, Indices, Floats, Inside | None], tuple[Floats32, Floats, Floats, Bools]
 ]
 
 
@@ -121,44 +121,48 @@ def compose(
     field: FlowField,
     lags: Floats,
     unit: Floats,
-    side: SideSlices,
+    sides: dict[float, SideSlices],
     direct: int,
     landing: Indices,
     run: Map,
     integrate: Integrate,
-    direction: float = -1.0,
     longest: float | Floats = np.inf,
 ) -> None:
-    """Fill the long slices of one direction in place.
+    """Fill the long slices of some directions, -1 backward and 1 forward, in place.
 
     The slices of the first ``direct`` of all lags (M,) are filled already, and ``reach`` is
     infinite for paths that did not end within these lags. ``landing`` comes from :func:`landings`,
     ``run`` maps a function over blocks of paths, and ``integrate`` follows paths close to a pole,
-    which are then marked as polar. Direction -1 is backward, 1 forward. Paths end, and stay, at the
-    first slice whose lag, times the unit, is ``longest`` or more: one number, or one for each node.
+    which are then marked as polar. Paths end, and stay, at the first slice whose lag, times the
+    unit, is ``longest`` or more: one number, or one for each node.
     """
     counts = np.maximum(np.searchsorted(lags, longest / unit) + 1, direct)
-    lookup = _SliceLookup(field, lags, unit, side, landing * int(direction), counts)
+    lookups = []
+    for direction, side in sides.items():
+        lookups.append(_SliceLookup(field, lags, unit, side, direction, landing, counts))
     poles = field.surface.poles
     beside = None
     rings = None
     if poles is not None:
         beside = integrate
-        if lookup.grid.endless:
+        if lookups[0].grid.endless:
             rings = PoleRings.of(poles, field.shape)
     for m in range(1, len(lags) + 1):
         if m > direct:
-            _Doubling(lookup, m, beside, rings).run(run)
+            _double(lookups, m, run, beside, rings)
         if m == len(lags):
             break
         if m <= direct:
-            lookup.judge(m, np.inf)
+            share = np.inf
         elif m == direct + 1:
-            lookup.judge(m, ROUGH)
+            share = ROUGH
         else:
-            lookup.judge(m, 1)
-    ends = np.where(counts < len(lags), lookup.knots[np.minimum(counts, len(lags))], np.inf)
-    np.minimum(side.reach, ends, out=side.reach)
+            share = 1
+        for lookup in lookups:
+            lookup.judge(m, share)
+    ends = np.where(counts < len(lags), lookups[0].knots[np.minimum(counts, len(lags))], np.inf)
+    for side in sides.values():
+        np.minimum(side.reach, ends, out=side.reach)
 
 
 class _Piece(NamedTuple):
@@ -182,16 +186,18 @@ class _SliceLookup:
         lags: Floats,
         unit: Floats,
         side: SideSlices,
+        direction: float,
         landing: Indices,
         counts: Indices,
     ) -> None:
+        self.direction = direction
         #: Number of slices of each node whose paths are followed, (J, I).
         self.counts = counts
         self.grid = NodeGrid.of(field)
         self.knots = np.concatenate([[0.0], lags]).astype(np.float32)
         # At lag zero the slope itself is stored.
         self._inverse = np.concatenate([[1.0], 1 / lags]).astype(np.float32)
-        self.landing = np.concatenate([[0], landing])
+        self.landing = np.concatenate([[0], landing * int(direction)])
         #: Measure of the units here, a power of two, so that single precision holds them.
         self.scale = float(2.0 ** np.rint(np.log2(np.median(unit))))
         self.unit = (unit.ravel() / self.scale).astype(np.float32)
@@ -207,11 +213,7 @@ class _SliceLookup:
         self._bends = np.zeros((2, *side.slices.shape[:-1]), np.complex64)
         self._pace = _corners(np.minimum, _greatest(np.abs(side.slices[0])))
         self._trust = np.zeros(self._pace.shape, np.float32)
-        # The second differences at the corners of a cell take the nodes beside them.
-        rows = np.clip(np.arange(-1, counts.shape[0] + 1), 0, counts.shape[0] - 1)
-        columns = np.clip(np.arange(-1, counts.shape[1] + 1), 0, counts.shape[1] - 1)
-        least = _corners(np.minimum, counts[np.ix_(rows, columns)][None])
-        self._filled = _corners(np.minimum, _corners(np.minimum, least))
+        self._filled = _filled(counts)
         self._longest = self._capped = np.empty(0, np.float32)
         self._endless = False
         #: Which nodes have a path that has come close to a pole, (T, J, I).
@@ -266,12 +268,11 @@ class _SliceLookup:
         covered = np.broadcast_to(lag * unit, left.shape)
         return _Piece(moved, covered, ends, self.landing[m])
 
-    def stuck(self, position: Floats) -> Bools:
-        """Return whether positions (2, n) are too close to a pole for interpolation, (n,)."""
-        return self.is_stuck(self.grid.corners(position))
-
     def is_stuck(self, corners: Corners, step: Indices | int = 0) -> Bools:
-        """Return the same for positions in these cells, at a time step."""
+        """Return whether positions in these cells are too close to a pole for interpolation, (n,).
+
+        They are at a time step, or at one each.
+        """
         return np.asarray(self._longest[corners.at + self._base(step)] == 0)
 
     def displaced(self, position: Floats32, lag: Floats32, step: Indices) -> Complexes:
@@ -338,14 +339,15 @@ class _Doubling:
         self,
         lookup: _SliceLookup,
         m: int,
-        integrate: Integrate | None,
         rings: PoleRings | None,
+        *,
+        passes: bool,
     ) -> None:
         count = len(lookup.reach)
         nodes = lookup.grid.size
         before = lookup.knots[m - 1]
         lag = lookup.knots[m]
-        self._lookup = lookup
+        self.lookup = lookup
         self._lag = lag
         self._before = before
         self._moved = lookup.slices[m]
@@ -354,52 +356,56 @@ class _Doubling:
         self._which = _followed(lookup, m, rings)
         self._whole = lag * lookup.unit
         self._left = np.tile((lag - before) * lookup.unit, count // nodes)
-        self._integrate = integrate
+        #: Whether paths close to a pole are integrated past it.
+        self._passes = passes
         self._rings = rings
+        self._blocks = self._first_blocks()
         self._stuck: list[Indices] = []
         self._suspects: list[tuple[AnyArray, ...]] = []
         self._step = lookup.clipped(np.arange(count) // nodes + lookup.landing[m - 1])
 
-    def run(self, run: Map) -> None:
-        """Follow all paths to their end, piece by piece."""
-        blocks: list[Selection]
+    def _first_blocks(self) -> list[Selection]:
+        """Return blocks of all paths that are followed."""
         if self._which is not None:
-            blocks = _parts(self._which)
-        else:
-            count = len(self._left)
-            blocks = [slice(first, min(first + BLOCK, count)) for first in range(0, count, BLOCK)]
-        for number in range(2 * MOST_PIECES):
-            if not blocks:
-                break
-            check()
-            if number >= MOST_PIECES:
-                longest = self._before
-            else:
-                longest = None
-            unfinished = np.concatenate(list(run(partial(self.follow, longest=longest), blocks)))
-            if self._stuck and (not len(unfinished) or (number + 1) % TOGETHER == 0):
-                # Many at once: each call has an overhead.
-                stuck = np.concatenate(self._stuck)
-                self._stuck = []
-                work = partial(self._pass, final=number >= MOST_PIECES)
-                unfinished = np.concatenate([unfinished, *run(work, _parts(stuck))])
-            if not len(unfinished):
-                break
-            blocks = _parts(unfinished)
+            return _parts(self._which)
+        count = len(self._left)
+        return [slice(first, min(first + BLOCK, count)) for first in range(0, count, BLOCK)]
+
+    @property
+    def is_going(self) -> bool:
+        """Whether some paths can go on by look-ups."""
+        return bool(self._blocks)
+
+    def go_on(self, run: Map, *, final: bool) -> None:
+        """Continue all paths by a piece, those that are ``final`` by the longest slice."""
+        longest = None
+        if final:
+            longest = self._before
+        unfinished = list(run(partial(self.follow, longest=longest), self._blocks))
+        self._blocks = _parts(np.concatenate([NO_PATHS, *unfinished]))
+
+    def take_stuck(self) -> Indices:
+        """Return the paths that are stuck at a pole, which go on after :meth:`passed`."""
+        stuck = np.concatenate([NO_PATHS, *self._stuck])
+        self._stuck = []
+        return stuck
+
+    def finish(self) -> None:
+        """Find where paths end, and fill those that were not followed."""
         if self._suspects:
             self._find_ends()
         if self._rings is not None:
-            size = self._lookup.grid.size
-            sets = self._moved.reshape(-1, size), self._lookup.reach.reshape(-1, size)
+            size = self.lookup.grid.size
+            sets = self._moved.reshape(-1, size), self.lookup.reach.reshape(-1, size)
             for moved, reach in zip(*sets, strict=True):
                 self._rings.fill(moved, reach)
 
     def follow(self, selection: Selection, longest: np.float32 | None) -> Indices:
         """Continue some paths by a piece, and return those that must go further."""
-        lookup = self._lookup
+        lookup = self.lookup
         position = self._positions(selection)
         corners = lookup.grid.corners(position)
-        if self._integrate is not None:
+        if self._passes:
             stuck = lookup.is_stuck(corners, self._at(selection))
             if stuck.any():
                 self._stuck.append(_numbers(selection, np.flatnonzero(stuck)))
@@ -425,37 +431,34 @@ class _Doubling:
 
     def _node(self, selection: Selection) -> Selection:
         """Return nodes at which some paths begin."""
-        if not self._lookup.unsteady:
+        if not self.lookup.unsteady:
             return selection
-        return np.asarray(np.arange(len(self._left))[selection] % self._lookup.grid.size)
+        return np.asarray(np.arange(len(self._left))[selection] % self.lookup.grid.size)
 
     def _at(self, selection: Selection) -> Indices | int:
         """Return the time steps at which some paths are."""
-        if self._lookup.unsteady:
+        if self.lookup.unsteady:
             return self._step[selection]
         return 0
 
     def _positions(self, selection: Selection) -> Floats32:
         """Return current positions of some paths, (2, n)."""
-        return _rows(self._lookup.nodes[self._node(selection)] + self._moved[selection])
+        return _rows(self.lookup.nodes[self._node(selection)] + self._moved[selection])
 
-    def _pass(self, which: Indices, *, final: bool) -> Indices:
-        """Integrate paths past a pole, or to their end, and return those that must go further."""
-        lookup = self._lookup
+    def rest(self, which: Indices) -> tuple[Floats32, Floats, Indices, Floats]:
+        """Return positions (2, n), lags left, time steps and directions of some paths."""
+        lag = self._left[which].astype(float) * self.lookup.scale
+        ways = np.full(len(which), self.lookup.direction)
+        return self._positions(which), lag, self._step[which], ways
+
+    def passed(
+        self, which: Indices, moved: Floats32, covered: Floats, ends: Floats, circling: Bools
+    ) -> None:
+        """Take what ``Integrate`` returns for some paths, which may have to go further."""
+        lookup = self.lookup
         left = self._left[which]
-        step = self._step[which]
-        if self._integrate is None:
-            return which
-        position = self._positions(which)
-        if lookup.unsteady or final:
-            within = None
-        else:
-            within = lookup.stuck
-        scale = lookup.scale
-        lag = left.astype(float) * scale
-        moved, covered, ends, circling = self._integrate(position, lag, step, within)
-        covered = covered / scale
-        ends = ends / scale
+        covered = covered / lookup.scale
+        ends = ends / lookup.scale
         self._moved[which] += moved[0] + 1j * moved[1]
         self._left[which] = left - covered
         lookup.polar.reshape(-1)[which] = True
@@ -463,11 +466,12 @@ class _Doubling:
         new = np.isinf(lookup.reach[which]) & np.isfinite(ends)
         whole = self._whole[self._node(which)]
         lookup.reach[which[new]] = self._lag * (1 - (left - ends)[new] / whole[new])
-        return _numbers(which, np.flatnonzero(self._left[which] > LAG_ROUNDING * whole))
+        on = np.flatnonzero(self._left[which] > LAG_ROUNDING * whole)
+        self._blocks += _parts(which[on])
 
     def _suspect(self, selection: Selection, position: Floats32, piece: _Piece) -> None:
         """List the paths that seem to end within their piece."""
-        lookup = self._lookup
+        lookup = self.lookup
         if piece.ends is None and lookup.grid.endless:
             return
         ending = ~lookup.grid.alive(position + _rows(piece.moved), BORDER_CELLS)
@@ -509,12 +513,91 @@ class _Doubling:
             low = np.where(outside, low, middle)
             high = np.where(outside, middle, high)
         further = np.where(leaves, low * length, np.where(rest < length, rest, np.inf))
-        whole = self._whole[which % self._lookup.grid.size]
-        self._lookup.reach[which] = self._lag * (1 - (left - further) / whole)
+        whole = self._whole[which % self.lookup.grid.size]
+        self.lookup.reach[which] = self._lag * (1 - (left - further) / whole)
 
     def _outside(self, start: Floats32, lag: Floats32, step: Indices) -> Bools:
-        moved = self._lookup.displaced(start, lag, step)
-        return ~self._lookup.grid.alive(start + _rows(moved), BORDER_CELLS)
+        moved = self.lookup.displaced(start, lag, step)
+        return ~self.lookup.grid.alive(start + _rows(moved), BORDER_CELLS)
+
+
+def _double(
+    lookups: list[_SliceLookup],
+    m: int,
+    run: Map,
+    integrate: Integrate | None,
+    rings: PoleRings | None,
+) -> None:
+    """Fill slice m of all directions: follow all paths to their end, piece by piece."""
+    passes = integrate is not None
+    doublings = []
+    for lookup in lookups:
+        doublings.append(_Doubling(lookup, m, rings, passes=passes))
+    for number in range(2 * MOST_PIECES):
+        if not any(doubling.is_going for doubling in doublings):
+            break
+        check()
+        final = number >= MOST_PIECES
+        for doubling in doublings:
+            doubling.go_on(run, final=final)
+        is_any = any(doubling.is_going for doubling in doublings)
+        if integrate is not None and (not is_any or (number + 1) % TOGETHER == 0):
+            _pass(doublings, run, integrate, final=final)
+    for doubling in doublings:
+        doubling.finish()
+
+
+def _pass(doublings: list[_Doubling], run: Map, integrate: Integrate, *, final: bool) -> None:
+    """Integrate the stuck paths of all directions past a pole, or to their end.
+
+    They are followed together: each round of steps has an overhead.
+    """
+    lookups = []
+    stuck = []
+    rests = []
+    for doubling in doublings:
+        which = doubling.take_stuck()
+        lookups.append(doubling.lookup)
+        stuck.append(which)
+        rests.append(doubling.rest(which))
+    owner = np.repeat(np.arange(len(stuck)), list(map(len, stuck)))
+    if not len(owner):
+        return
+    rest = _joined(rests)
+
+    def work(part: Selection) -> tuple[AnyArray, ...]:
+        inside = None
+        if not (final or lookups[0].unsteady):
+            inside = partial(_are_stuck, lookups, owner[part])
+        position, lag, step, ways = _picked(rest, part)
+        return integrate(position, lag, step, ways, inside)
+
+    passed = _joined(list(run(work, _parts(np.arange(len(owner))))))
+    for number, doubling in enumerate(doublings):
+        doubling.passed(stuck[number], *_picked(passed, owner == number))
+
+
+def _joined(groups: Sequence[Sequence[AnyArray]]) -> list[AnyArray]:
+    """Return the arrays (..., n) of groups of paths as those of all."""
+    return [np.concatenate(parts, axis=-1) for parts in zip(*groups, strict=True)]
+
+
+def _picked(values: Sequence[AnyArray], which: Selection | Bools) -> list[AnyArray]:
+    """Return the values of some paths from arrays (..., n)."""
+    return [array[..., which] for array in values]
+
+
+def _are_stuck(
+    lookups: list[_SliceLookup], owner: Indices, position: Floats, which: Indices
+) -> Bools:
+    """Return which paths (n,), by their numbers, are too close to a pole for interpolation."""
+    corners = lookups[0].grid.corners(position)
+    owner = owner[which]
+    result = np.empty(len(which), bool)
+    for number, lookup in enumerate(lookups):
+        own = owner == number
+        result[own] = lookup.is_stuck(corners)[own]
+    return result
 
 
 def _followed(lookup: _SliceLookup, m: int, rings: PoleRings | None) -> Indices | None:
@@ -551,6 +634,14 @@ def _bend(grid: Floats32, axis: int) -> Floats32:
     width = [(0, 0)] * grid.ndim
     width[axis] = (1, 1)
     return np.pad(np.diff(grid, 2, axis=axis), width, mode="edge")
+
+
+def _filled(counts: Indices) -> Indices:
+    """Return the numbers of slices (1, J - 1, I - 1) around cells, by those of nodes (J, I)."""
+    # The second differences at the corners of a cell take the nodes beside them.
+    around = np.pad(counts, 1, mode="edge")[None]
+    least = _corners(np.minimum, around)
+    return np.asarray(_corners(np.minimum, _corners(np.minimum, least)))
 
 
 def _greatest(parts: AnyArray) -> AnyArray:

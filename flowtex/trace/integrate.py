@@ -36,6 +36,8 @@ CIRCLE_ERRORS = 20.0  #: Least displacement in these steps, in multiples of the 
 LAG_ROUNDING = 1e-9
 #: Displacement in cells that single precision holds, also in computations.
 MOST_CELLS = 1e30
+#: Returns whether paths (n,), by their numbers, are followed at positions (2, n) in index space.
+Inside = Callable[[Floats, Indices], Bools]
 
 
 @dataclass(frozen=True)
@@ -57,16 +59,15 @@ def integrate(
     lags: Floats,
     unit: Floats,
     *,
-    direction: float,
+    direction: float | Floats,
     tolerance: float,
-    within: Callable[[Floats], Bools] | None = None,
+    within: Inside | None = None,
 ) -> Paths:
     """Follow particles from positions (N, 2) as (i, j) and return where they are at the lags (M,).
 
     Lags are positive and increasing, in multiples of each particle's ``unit`` (N,). Direction -1 is
-    backward, 1 forward; the tolerance is the error allowed in one step, in cells. ``within``
-    returns whether paths are followed at positions (2, N) in index space; a path that leaves them
-    is interrupted.
+    backward, 1 forward, for all or (N,); the tolerance is the error allowed in one step, in cells.
+    A path that is not ``within`` the positions where it is followed is interrupted.
     """
     run = _Run(sampler, np.ascontiguousarray(start.T), lags, unit, direction, tolerance, within)
     lines = sampler.grid.rows + sampler.grid.columns
@@ -125,6 +126,7 @@ class _Particles(Columns):
     next: Indices
     chart: Numbers | None  #: Charts of ``y``, on a surface with poles.
     index: Floats | None  #: The same in index space.
+    direction: Floats  #: -1 for particles that are followed backward, 1 forward.
 
 
 @dataclass
@@ -156,20 +158,15 @@ class _Run:
         start: Floats,
         lags: Floats,
         unit: Floats,
-        direction: float,
+        direction: float | Floats,
         tolerance: float,
-        within: Callable[[Floats], Bools] | None = None,
+        within: Inside | None = None,
     ) -> None:
         count = start.shape[1]
         self.sampler = sampler
-        self.direction = direction
         self.tolerance = tolerance
         self.charts = sampler.charts
         self.within = within
-        #: Lag to the first or last time step, beyond which the flow is constant.
-        self.span = sampler.times[-1] - sampler.destination
-        if direction < 0:
-            self.span = sampler.destination - sampler.times[0]
         self.lags = lags
         self.before = np.full(start.shape, np.inf)
         #: The lags and one that is never reached, for particles that have passed all.
@@ -179,15 +176,16 @@ class _Run:
         self.polar, self.interrupted, self.circling = np.zeros((3, count), dtype=bool)
         if self.charts is not None:
             self.polar |= self.charts.close(start)
-        self.state = self._first_state(start, unit)
+        self.state = self._first_state(start, unit, direction)
 
-    def _first_state(self, start: Floats, unit: Floats) -> _Particles:
+    def _first_state(self, start: Floats, unit: Floats, direction: float | Floats) -> _Particles:
         """Return particles that begin at positions (2, N) in index space."""
         count = start.shape[1]
         last = float(self.lags[-1])
         chart = None
         index = None
         y = start
+        ways = np.broadcast_to(np.asarray(direction, dtype=float), (count,))
         if self.charts is not None:
             chart = self.charts.choose(start)
             index = start
@@ -199,10 +197,11 @@ class _Run:
             y=y,
             lag=np.zeros(count),
             step=last * unit,
-            rate=self.sampler.rate(y, np.zeros(count), self.direction, chart),
+            rate=self.sampler.rate(y, np.zeros(count), ways, chart),
             next=np.zeros(count, dtype=np.intp),
             chart=chart,
             index=index,
+            direction=ways,
         )
 
     def end_resting(self) -> None:
@@ -233,7 +232,7 @@ class _Run:
         h = np.minimum(np.minimum(state.step, longest), rest)
         if np.isfinite(self.sampler.longest):
             # Before the first time step nothing changes.
-            changing = state.lag < self.span
+            changing = state.lag < self._span(state.direction)
             h = np.where(changing, np.minimum(h, self.sampler.longest), h)
         step, error = self._try(h)
         size = np.maximum(error * (1 / self.tolerance), 1e-9)
@@ -249,6 +248,13 @@ class _Run:
         if (finished := self.state.next >= len(self.lags)).any():
             self.state = self.state.pick(~finished)
 
+    def _span(self, direction: Floats) -> Floats:
+        """Return lags (N,) to the first or last time step, beyond which the flow is constant."""
+        sampler = self.sampler
+        ahead = sampler.times[-1] - sampler.destination
+        behind = sampler.destination - sampler.times[0]
+        return np.asarray(np.where(direction < 0, behind, ahead))
+
     def _try(self, h: Floats) -> tuple[IntegrationStep, Floats]:
         """Return one Bogacki-Shampine step, and its estimated error in cells, (N,)."""
         state = self.state
@@ -263,7 +269,8 @@ class _Run:
         return IntegrationStep(y, k1, after, k4, lag, h, state.chart, state.index), error
 
     def _rate(self, position: Floats, lag: Floats, ahead: Floats) -> Floats:
-        return self.sampler.rate(position, lag, self.direction, self.state.chart, ahead)
+        state = self.state
+        return self.sampler.rate(position, lag, state.direction, state.chart, ahead)
 
     def _index(self, position: Floats, along: IntegrationStep | _Particles) -> Floats:
         """Return positions in index space of positions on the charts of a step or state."""
@@ -300,7 +307,7 @@ class _Run:
         """Stop the paths that have left the region in which they are followed."""
         if self.within is None:
             return
-        now = ~(self.within(index) | outside) & (state.next < len(self.lags))
+        now = ~(self.within(index, state.which) | outside) & (state.next < len(self.lags))
         if not now.any():
             return
         which = state.which[now]
@@ -322,7 +329,8 @@ class _Run:
             charts = chart[new]
             state.y[:, new] = y = self.charts.enter(state.index[:, new], charts)
             ahead = y - self.charts.enter(before[:, new], charts)
-            state.rate[:, new] = self.sampler.rate(y, state.lag[new], self.direction, charts, ahead)
+            ways = state.direction[new]
+            state.rate[:, new] = self.sampler.rate(y, state.lag[new], ways, charts, ahead)
 
     def _record(self, state: _Particles, step: IntegrationStep, share: Floats) -> None:
         """Write the positions at the lags that the first ``share`` of the steps has passed."""

@@ -97,23 +97,24 @@ class Sampler:
         self,
         position: Floats,
         lag: Floats,
-        direction: float,
+        direction: Floats,
         chart: Numbers | None = None,
         ahead: Floats | None = None,
     ) -> Floats:
         """Return rates of change of positions by lag for particles at ``lag`` (N,).
 
-        In a sign-free field with ``ahead`` (2, N) it is the one of both rates that leads ahead,
-        in either direction.
+        Direction (N,) is -1 for those that are followed backward, 1 forward. In a sign-free field
+        with ``ahead`` (2, N) it is the one of both rates that leads ahead, in either direction.
         """
+        moment = self.destination + direction * lag
         if chart is None or not chart.any():
-            result = self._rate(self._patches[0], position, lag, direction)
+            result = self._rate(self._patches[0], position, moment)
         else:
             result = np.empty_like(position)
             for number, patch in enumerate(self._patches):
                 at = np.flatnonzero(chart == number)
                 if len(at):
-                    result[:, at] = self._rate(patch, position[:, at], lag[at], direction)
+                    result[:, at] = self._rate(patch, position[:, at], moment[at])
         if self._poles is not None and chart is not None:
             # Beyond a pole index space runs the other way.
             turned = (chart == 0) & self._poles.mirrored(position)
@@ -121,8 +122,7 @@ class Sampler:
         if self._metric and ahead is not None:
             result *= self._sign(position, result, ahead, chart)
             return result
-        if direction < 0:
-            return np.negative(result, out=result)
+        result *= direction
         return result
 
     def _sign(self, position: Floats, one: Floats, two: Floats, chart: Numbers | None) -> Floats:
@@ -166,8 +166,8 @@ class Sampler:
             return np.zeros(len(unit))
         return STILL_CELLS / (unit * last)
 
-    def _rate(self, patch: Patch, position: Floats, lag: Floats, direction: float) -> Floats:
-        """Return the rate on one chart, forward, at time destination + direction * lag."""
+    def _rate(self, patch: Patch, position: Floats, moment: Floats) -> Floats:
+        """Return the rate on one chart, forward, at times (N,)."""
         corners = patch.corners(position)
         if len(self.times) == 1:
             result = np.stack([patch.blend(0, corners), patch.blend(1, corners)])
@@ -176,9 +176,9 @@ class Sampler:
                 speed[speed <= self._floor] = np.inf
                 result /= speed
             return result
-        step, late = bracket(self.times, self.destination + direction * lag, side="left")
+        step, late = bracket(self.times, moment, side="left")
         np.clip(late, 0, 1, out=late)
-        result = np.empty((2, len(lag)))
+        result = np.empty((2, len(moment)))
         for component, row in enumerate(result):
             before = patch.blend(component, corners, step)
             row[:] = patch.blend(component, corners, step + 1)

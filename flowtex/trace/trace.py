@@ -26,8 +26,8 @@ from flowtex.field.derived.gradient import node_gradient, true_positions
 from flowtex.field.derived.kinds import FOLLOWED
 from flowtex.field.interpolation import nearest_known
 from flowtex.field.steps import LazySteps, Steps
-from flowtex.trace.compose import Map, SideSlices, Within, compose, landings
-from flowtex.trace.integrate import MOST_CELLS, Paths, integrate
+from flowtex.trace.compose import Map, SideSlices, compose, landings
+from flowtex.trace.integrate import MOST_CELLS, Inside, Paths, integrate
 from flowtex.trace.sampler import Sampler
 from flowtex.trace.slices import SliceOrigin, TraceSlices, choose_lags, lag_unit
 from flowtex.trace.triangles.triangle_slices import triangle_paths, triangle_slices
@@ -200,8 +200,17 @@ def paths(
     # A particle is at rest if it hardly moves in a unit; so the unit is a cell, not 1.
     unit = float(lag_unit(field, parameter)[field.valid].max(initial=0.0)) or 1.0
     units = np.full(len(begin), unit)
-    result = integrate(sampler, begin, lag_values / unit, units, within=within, **options)
+    inside = None
+    if within is not None:
+        inside = partial(_at_positions, within)
+    result = integrate(sampler, begin, lag_values / unit, units, within=inside, **options)
     return replace(result, reach=result.reach * unit)
+
+
+def _at_positions(within: Callable[[Floats], Bools], position: Floats, which: Indices) -> Bools:
+    """Return whether paths are followed at positions (2, n), whichever they are."""
+    del which
+    return within(position)
 
 
 def _step_numbers(field: FlowField, steps: Any) -> list[int]:
@@ -362,7 +371,7 @@ class _Tracing:
         """Rates at which paths leave the nodes, by unit of lag, (T, J, I, 2)."""
         start = np.ascontiguousarray(self.nodes.reshape(-1, 2).T)
         still = np.zeros(start.shape[1])
-        rate = np.stack([sampler.rate(start, still, 1.0) for sampler in self.samplers])
+        rate = np.stack([sampler.rate(start, still, still + FORWARD) for sampler in self.samplers])
         rate = np.moveaxis(rate.reshape(-1, 2, *self.field.shape), 1, -1) * self.unit[..., None]
         rate[:, ~self.field.valid] = 0.0
         return rate
@@ -426,11 +435,21 @@ class _Tracing:
         with _threads() as run:
             self._integrate(sides, direct, run)
             for direction, flat in sides.items():
-                side = sides[direction] = self._as_grids(flat, direction)
-                if landing is not None and direct < len(self.lags):
-                    way = run, partial(self._piece, direction), direction, self.longest
-                    compose(self.field, self.lags, self.unit, side, direct, landing, *way)
+                sides[direction] = self._as_grids(flat, direction)
+            if landing is not None and direct < len(self.lags):
+                way = direct, landing, run, self._piece, self.longest
+                for together in self._together(sides):
+                    compose(self.field, self.lags, self.unit, together, *way)
         return sides
+
+    def _together(self, sides: dict[float, SideSlices]) -> list[dict[float, SideSlices]]:
+        """Return the directions that are composed together: all where paths pass poles."""
+        if self.field.surface.poles is not None:
+            return [sides]
+        alone = []
+        for direction, side in sides.items():
+            alone.append({direction: side})
+        return alone
 
     def _direct_lags(self, landing: Indices) -> int:
         """Return the number of lags to integrate: up to a cell, and to the first time step."""
@@ -477,11 +496,11 @@ class _Tracing:
 
     def _piece(
         self,
-        direction: float,
         position: Floats32,
         lag: Floats,
         step: Indices,
-        within: Within | None,
+        direction: Floats,
+        inside: Inside | None,
     ) -> tuple[Floats32, Floats, Floats, Bools]:
         """Follow some paths, an :data:`flowtex.trace.compose.Integrate`."""
         moved = np.empty_like(position)
@@ -499,9 +518,9 @@ class _Tracing:
             start = position[:, group].T.astype(float)
             unit = lag[group]
             sampler = self.samplers[number]
-            options = {"tolerance": self.tolerance}
-            options["direction"] = direction
-            result = integrate(sampler, start, np.ones(1), unit, within=within, **options)
+            options: dict[str, Any] = {"tolerance": self.tolerance}
+            options["direction"] = direction[group]
+            result = integrate(sampler, start, np.ones(1), unit, within=inside, **options)
             moved[:, group] = (result.positions[0] - start).T
             covered[group] = np.where(result.interrupted, result.reach, 1.0) * unit
             ends[group] = np.where(result.interrupted, np.inf, result.reach) * unit

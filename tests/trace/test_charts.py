@@ -192,3 +192,24 @@ def test_streaks_go_straight_through_the_pole(opengl: Any, zoom: float, up: floa
         found = streaks(picture, 0 * ones, ones, part)
         assert found["angle"] < 3.0
         assert found["coherence"] > 0.85
+
+
+def test_paths_of_both_directions_pass_the_poles_together(monkeypatch: pytest.MonkeyPatch) -> None:
+    module = import_module("flowtex.trace.trace")
+    integrate = module.integrate
+    calls: list[Floats] = []
+
+    def recorded(*arguments: Any, direction: Any, **options: Any) -> Any:
+        calls.append(np.unique(direction))
+        return integrate(*arguments, direction=direction, **options)
+
+    monkeypatch.setattr(module, "integrate", recorded)
+    field = rotation(TILTED)
+    both = trace(field)
+    assert sum(len(directions) == 2 for directions in calls) > 2
+    in_both = len(calls)
+    calls.clear()
+    one = trace(field, two_sided=False)
+    assert in_both < 1.5 * len(calls)
+    np.testing.assert_array_equal(both.displacement, one.displacement)
+    np.testing.assert_array_equal(both.reach, one.reach)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from flowtex._util.array_types import AnyArray, Bools, Floats
-from flowtex._util.arrays import dot, row_blocks
+from flowtex._util.arrays import cross, dot, row_blocks
 from flowtex.field.triangles.sharp_edges import SHARP_EDGE
 
 
@@ -46,7 +46,7 @@ def _normals(points: Floats, cells: Bools) -> Floats:
     for rows in row_blocks(*cells.shape):
         before = points[:-1][rows]
         after = points[1:][rows]
-        across = np.cross(after[:, 1:] - before[:, :-1], after[:, :-1] - before[:, 1:])
+        across = cross(after[:, 1:] - before[:, :-1], after[:, :-1] - before[:, 1:])
         length = np.sqrt(dot(across, across))[..., None]
         is_solid = (length > 0) & cells[rows][..., None]
         np.divide(across, length, out=normals[rows], where=is_solid)
@@ -56,10 +56,9 @@ def _normals(points: Floats, cells: Bools) -> Floats:
 def _sharp_sides(normals: Floats, *, closes: bool) -> Bools:
     """Return which sides along each line of nodes, (J, I - 1), are sharp."""
     lines = _with_ends(normals, 0, closes=closes)
-    near = lines[:-1]
-    far = lines[1:]
-    is_drawn = (dot(near, near) > 0.5) & (dot(far, far) > 0.5)
-    return np.asarray(is_drawn & (dot(near, far) < SHARP_EDGE))
+    is_drawn = dot(lines, lines) > 0.5
+    is_sharp = dot(lines[:-1], lines[1:]) < SHARP_EDGE
+    return np.asarray(is_drawn[:-1] & is_drawn[1:] & is_sharp)
 
 
 def _with_ends(values: AnyArray, axis: int, *, closes: bool) -> AnyArray:
