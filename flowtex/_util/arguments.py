@@ -104,6 +104,13 @@ def checked_count(
     return int(value)
 
 
+def checked_flag(name: str, value: Any) -> bool:
+    """Return True or False; a FieldError names the argument that has another value."""
+    if not isinstance(value, (bool, np.bool_)):
+        raise FieldError(f"{name} is {brief(value)}; expected True or False")
+    return bool(value)
+
+
 def checked_array(name: str, value: Any, *, expected: str) -> Floats:
     """Return real numbers of any shape; a FieldError names what was expected."""
     try:

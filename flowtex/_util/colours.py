@@ -132,12 +132,14 @@ def _known(name: Any) -> Any:
 def _named_table(name: Any, count: int) -> Bytes:
     """Return a colour map by its name, as RGBA rows, (count, 4) uint8."""
     from matplotlib import colormaps
+    from matplotlib.colors import to_rgba_array
 
     colours = _known(name)
     try:
         if callable(colours):
-            # Rounded down, as PyVista does, so that all renderers have the same colours.
-            return np.asarray(np.asarray(colours(np.linspace(0, 1, count))) * 255, dtype=np.uint8)
+            return _computed(colours, count)
+        if not isinstance(name, str):  # colours, as lists of names or numbers
+            return _resampled(to_rgba_array(name), count)
         import pyvista as pv
 
         return _resampled(np.asarray(pv.LookupTable(name, n_values=count).values), count)
@@ -145,8 +147,17 @@ def _named_table(name: Any, count: int) -> Bytes:
         if isinstance(name, str):
             hint = near_names(name, colormaps, CMAPS)
         else:
-            hint = "expected a name"
+            hint = "expected a name, a colour map of matplotlib, or colours"
         raise FieldError(f"the colour map {brief(name)} does not exist; {hint}") from error
+
+
+def _computed(colours: Callable[[Floats], AnyArray], count: int) -> Bytes:
+    """Return the table (count, 4) of a function from 0 to 1, as colour maps of matplotlib are."""
+    table = np.asarray(colours(np.linspace(0, 1, count)))
+    if table.shape != (count, 4):
+        raise ValueError(f"the function returns the shape {table.shape}; expected ({count}, 4)")
+    # Rounded down, as PyVista does, so that all renderers have the same colours.
+    return np.asarray(table * 255, dtype=np.uint8)
 
 
 _cached_table = cache(_named_table)

@@ -17,8 +17,10 @@ from contextvars import ContextVar
 from functools import cache
 from typing import TYPE_CHECKING, Any, ParamSpec, TypeVar
 
+from flowtex._util.arguments import brief
 from flowtex._util.forks import renew_after_fork
 from flowtex._util.terminal import terminal
+from flowtex.errors import FieldError
 
 if TYPE_CHECKING:
     from rich.progress import Progress
@@ -117,7 +119,18 @@ class Stopped(Exception):
 
 @contextmanager
 def stoppable(cancelled: Callable[[], bool]) -> Iterator[None]:
-    """Raise :class:`Stopped` in the work inside, in this thread, once ``cancelled()`` is true."""
+    """Raise :class:`Stopped` in the work inside, in this thread, once ``cancelled()`` is true.
+
+    Raises
+    ------
+    FieldError
+        When it is not a function.
+    """
+    if not callable(cancelled):
+        raise FieldError(
+            f"cancelled is {brief(cancelled)}; expected a function without arguments that returns "
+            "True once the work is to be cancelled"
+        )
     token = _cancelled.set(cancelled)
     try:
         yield

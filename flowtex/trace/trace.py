@@ -17,7 +17,7 @@ from typing import Any, TypeVar
 import numpy as np
 from numpy.typing import ArrayLike
 
-from flowtex._util.arguments import brief, check_field, checked_array, checked_number
+from flowtex._util.arguments import brief, check_field, checked_array, checked_flag, checked_number
 from flowtex._util.array_types import Bools, Floats, Floats32, Indices
 from flowtex._util.progress import pool, track
 from flowtex.errors import FieldError, notify
@@ -131,8 +131,7 @@ def trace(
     """
     check_field(field, FlowField)
     parameter = _parameter(field, parameter)
-    if field.sign_free:
-        _check_sign_free(two_sided=two_sided, compose=compose)
+    _check_flags(field, two_sided=two_sided, compose=compose, progress=progress)
     if lags is None:
         lag_values = choose_lags(field, parameter)
     else:
@@ -220,9 +219,23 @@ def _step_numbers(field: FlowField, steps: Any) -> list[int]:
     numbers = []
     if np.iterable(steps):
         numbers = list(map(field.step_number, steps))
-    if not numbers:
-        raise FieldError(f"steps is {brief(steps)}; expected numbers of time steps, such as [0]")
+    if not numbers or len(set(numbers)) < len(numbers):
+        raise FieldError(
+            f"steps is {brief(steps)}; expected numbers of time steps, each once, such as [0]"
+        )
     return numbers
+
+
+def _check_flags(
+    field: FlowField, *, two_sided: bool, compose: bool | None, progress: bool
+) -> None:
+    """Check arguments that are true or false, alone and for the field."""
+    checked_flag("two_sided", two_sided)
+    checked_flag("progress", progress)
+    if compose is not None:
+        checked_flag("compose", compose)
+    if field.sign_free:
+        _check_sign_free(two_sided=two_sided, compose=compose)
 
 
 def _check_sign_free(*, two_sided: bool, compose: bool | None) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import datetime
 import warnings
 from collections.abc import Iterator
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -12,7 +13,9 @@ import pytest
 import pyvista as pv
 from earth_data import winds
 
+import flowtex
 from flowtex._util.arguments import brief
+from flowtex._util.colours import colour_table
 from flowtex.errors import FieldError
 from flowtex.field.options import OF_DATASETS, OF_EARTH, FieldOptions, option_names
 from flowtex.scene.options import Appearance, Options, ViewOptions
@@ -89,3 +92,48 @@ def test_names_of_components_and_coordinates_may_be_lists() -> None:
 def test_none_is_the_default_of_the_appearance() -> None:
     scene = Scene.of(plane(), visible=None, log_scale=None, opacity=None, nan_color=None)
     assert vars(scene.appearance) == vars(Scene.of(plane()).appearance)
+
+
+#: Functions, an argument of each that is true or false or a function, and what it is called.
+FLAGS: tuple[tuple[str, str], ...] = (
+    ("trace", "two_sided"),
+    ("trace", "compose"),
+    ("trace", "progress"),
+    ("render", "annotations"),
+    ("movie", "annotations"),
+    ("movie", "progress"),
+    ("movie", "cancelled"),
+)
+
+
+@pytest.mark.usefixtures("opengl")
+@pytest.mark.parametrize(("function", "argument"), FLAGS)
+def test_a_flag_of_another_type_is_refused_by_name(
+    function: str, argument: str, tmp_path: Path
+) -> None:
+    field = flowtex.examples.double_gyre_field(shape=(5, 9))
+    options: dict[str, Any] = {}
+    if function == "movie":
+        options = {"path": tmp_path / "gyre.gif", "seconds": 0.2, "size": (32, 24)}
+    for value in (np.zeros(3), "abc", 2, [1, 2]):
+        with pytest.raises(FieldError, match=rf"^{argument} is .*; expected"):
+            getattr(flowtex, function)(field, **options, **{argument: value})
+
+
+def test_time_steps_that_repeat_are_refused() -> None:
+    field = flowtex.examples.double_gyre_field(shape=(5, 9))
+    with pytest.raises(FieldError, match=r"steps is .*expected numbers of time steps, each once"):
+        flowtex.trace(field, steps=[0, 0])
+
+
+@pytest.mark.parametrize("cmap", [len, np.zeros(3), [1, 2], {"a": 1}, object()])
+def test_a_colour_map_that_is_none_is_refused(cmap: Any) -> None:
+    with pytest.raises(FieldError, match=r"colour map|cmap"):
+        make_scenes(plane(), Options.split(cmap=cmap))
+
+
+def test_a_colour_map_of_colours_has_these() -> None:
+    table = colour_table(["red", "#00ff00", (0.0, 0.0, 1.0)])[:, :3]
+    assert table[0].tolist() == [255, 0, 0]
+    assert table[-1].tolist() == [0, 0, 255]
+    assert [0, 255, 0] in table.tolist()

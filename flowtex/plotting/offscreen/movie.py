@@ -17,7 +17,7 @@ from typing import Any
 
 import numpy as np
 
-from flowtex._util.arguments import checked_number
+from flowtex._util.arguments import checked_flag, checked_number
 from flowtex._util.array_types import Bytes
 from flowtex._util.progress import stoppable, track
 from flowtex.field import FlowField
@@ -237,6 +237,7 @@ def movie(
     if fps is None:
         fps = default_fps(path)
     check_movie(path, size, fps, quality)
+    checked_flag("progress", progress)
     drawing = {"size": size, "supersampling": supersampling, "annotations": annotations}
     shown, drawn = _prepare(mesh, options, fps, seconds, **drawing)
     writer = MovieWriter(path, size, fps, quality)

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from flowtex._util.arguments import checked_count, checked_size, is_number
+from flowtex._util.arguments import checked_count, checked_flag, checked_size, is_number
 from flowtex._util.array_types import Bytes
 from flowtex.errors import FieldError, notify
 from flowtex.field.options import FieldOptions, accepts_options
@@ -57,21 +57,19 @@ class OffscreenPlotter:
         require_opengl()
         notify_section(scenes[0].field.section)
         self._legend = scenes[0].has_bar
+        annotations = checked_flag("annotations", annotations)
         bars: Bars = "asked"
         if annotations:
             bars = "none"
         self._supersampling = supersampling
         self._margin = margin
         self._view = view
-        outline_samples = 0  # supersampling smooths outlines as well
-        if supersampling == 1:
-            outline_samples = OUTLINE_SAMPLES
         self._plotter, self.handles = open_plotter(
             scenes,
             view,
             (size[0] * supersampling, size[1] * supersampling),
             margin=margin,
-            outline_samples=outline_samples,
+            outline_samples=_outline_samples(supersampling),
             labels=not annotations,
             bars=bars,
             off_screen=True,
@@ -171,6 +169,13 @@ class OffscreenPlotter:
     def close(self) -> None:
         """Free the graphics card."""
         self._plotter.close()
+
+
+def _outline_samples(supersampling: int) -> int:
+    """Return the samples of a pixel at outlines; supersampling smooths these as well."""
+    if supersampling == 1:
+        return OUTLINE_SAMPLES
+    return 0
 
 
 def _checked_size(size: Any, supersampling: Any) -> tuple[tuple[int, int], int]:
