@@ -14,6 +14,7 @@ from flowtex.field.earth.projection import GLOBE, NAMES, Projection
 from flowtex.field.earth.tears import between, tears
 from flowtex.field.grids.grid_nodes import find_closure
 from flowtex.sources.datasets.coordinates import Places
+from flowtex.sources.datasets.space_planes import SpacePlane
 
 #: Rows or columns, by numbers or as a slice.
 Lines: TypeAlias = Indices | slice
@@ -71,10 +72,18 @@ EDGE_LATITUDES = np.linspace(-75.0, 75.0, 31)
 
 @dataclass(eq=False)
 class PlaneNodes:
-    """Nodes in a plane, whose components are along x and y."""
+    """Nodes in a plane, whose components are along x and y, or along a plane across one of them."""
 
-    points: Floats
+    positions: Floats  #: (..., 2).
+    plane: SpacePlane | None = None
     projection: Projection | None = None
+
+    @property
+    def points(self) -> Floats:
+        """Positions of the nodes, (..., 2), or in space, (..., 3)."""
+        if self.plane is None:
+            return self.positions
+        return self.plane.points(self.positions)
 
     def at(self, values: Floats) -> Floats:
         """Return values as they are."""
@@ -85,7 +94,9 @@ class PlaneNodes:
         return values
 
     def vectors(self, u: Floats, v: Floats) -> Floats:
-        """Return vectors of components along x and y."""
+        """Return vectors of components along the axes of the plane."""
+        if self.plane is not None:
+            return self.plane.vectors(u, v)
         return np.stack([u, v, np.zeros_like(u)], axis=-1)
 
 

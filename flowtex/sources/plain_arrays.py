@@ -24,7 +24,7 @@ from flowtex.field.options import FieldOptions
 from flowtex.field.plain_arrays import PlainFlow, are_named, fields_of, has_files, read_plain
 from flowtex.field.validation import with_gaps
 from flowtex.remedies import Remedy, sentence
-from flowtex.sources.datasets.directions import BY_WORD, MEANINGS, MOST_RADIANS
+from flowtex.sources.datasets.directions import BY_WORD, MEANINGS, MOST_RADIANS, SPEEDS
 from flowtex.sources.datasets.directions import in_components as components_of
 from flowtex.sources.datasets.own_values import with_values
 from flowtex.sources.named_dataset import named_dataset
@@ -378,11 +378,8 @@ def _speed_and_angle(data: Any, names: tuple[str, ...], options: FieldOptions) -
 def _velocity_names(options: FieldOptions, known: Mapping[str, str]) -> tuple[str, ...]:
     """Return the names of the components, those that the user names first."""
     vectors = options.vectors
-    if options.direction is not None and vectors is None:
-        raise FieldError(
-            f"direction is {brief(options.direction)}; name the speed as well, as in "
-            'vectors="speed", direction="angle"'
-        )
+    if vectors is None and options.direction is not None:
+        return _speed_names(options.direction, known)
     if vectors is None:
         return _first(VELOCITIES, known)
     names = tuple(name.strip() for name in vectors.split(","))
@@ -393,6 +390,26 @@ def _velocity_names(options: FieldOptions, known: Mapping[str, str]) -> tuple[st
             f"{', '.join(known.values())}"
         )
     return names
+
+
+def _speed_names(direction: Any, known: Mapping[str, str]) -> tuple[str, ...]:
+    """Return the name of the only speed, and that of its direction if this is a name as well."""
+    speeds = list(filter(SPEEDS.search, known.values()))
+    if isinstance(direction, str) and direction in speeds:
+        speeds.remove(direction)
+    if len(speeds) != 1:
+        raise FieldError(
+            f"direction is {brief(direction)}; name the speed as well, as in "
+            'vectors="speed", direction="angle"'
+        )
+    if not isinstance(direction, str):
+        return (speeds[0],)
+    if direction not in known.values():
+        raise FieldError(
+            f"direction is {direction!r}, and there is no such array; expected a name among "
+            f"{', '.join(known.values())}"
+        )
+    return speeds[0], direction
 
 
 def _first(choices: Iterable[tuple[str, ...]], known: Mapping[str, str]) -> tuple[str, ...]:

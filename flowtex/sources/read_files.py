@@ -33,7 +33,12 @@ from flowtex.sources.meshes.amr import amr_blocks
 from flowtex.sources.meshes.read_meshes import choose, read_meshes
 from flowtex.sources.meshes.vectors import MeshArray, candidates, catalogue, hidden_nodes, values_of
 from flowtex.sources.notices import Record
-from flowtex.sources.opening.dataset_files import common_name, dataset_paths, open_datasets
+from flowtex.sources.opening.dataset_files import (
+    common_name,
+    dataset_paths,
+    is_dataset_file,
+    open_datasets,
+)
 from flowtex.sources.reader_errors import errors_of_file
 
 if TYPE_CHECKING:
@@ -335,13 +340,20 @@ def one_path(path: str | Path | Sequence[str | Path]) -> Path:
     if isinstance(path, (str, Path)):
         return Path(path).expanduser()
     missing = []
+    others = []
     for each in path:
-        if not Path(each).expanduser().exists():
+        file = Path(each).expanduser()
+        if not file.exists():
             missing.append(str(each))
+        elif not is_dataset_file(file):
+            others.append(file.name)
+    if missing:
+        names = ", ".join(missing)
+        raise FieldError(f"{names}: no such file; check the path and the working directory")
     raise FieldError(
-        f"{', '.join(missing)}: no such file; check the path and the working directory"
-        if missing
-        else f"{len(path)} files are given, but several are read only as datasets; give a .pvd file"
+        f"{len(path)} files are given, and {', '.join(others)} is no dataset or table, of which "
+        "alone several are read together. Name one file; for steps of a mesh it is a .pvd file, "
+        "which lists them"
     )
 
 

@@ -106,8 +106,8 @@ def test_speed_and_direction_are_known_by_their_names() -> None:
     arrays = {"lon": LON, "lat": LAT, "speed": speed, "wind_direction": direction}
     expected = read({"lon": LON, "lat": LAT, "u": ZONAL, "v": MERIDIONAL})
     np.testing.assert_allclose(read(arrays).velocity, expected.velocity, atol=1e-9)
-    arrays["angle"] = arrays.pop("wind_direction")
-    with pytest.raises(FieldError, match='vectors="speed", direction="angle"'):
+    arrays["wave_angle"] = arrays.pop("wind_direction")
+    with pytest.raises(FieldError, match='vectors="speed", direction="wave_angle"'):
         read(arrays)
 
 
@@ -234,7 +234,7 @@ def test_other_arguments_of_arrays_are_refused() -> None:
             read(LINE_X, LINE_Y, U, V, **options)
     with pytest.raises(FieldError, match="vectors is 'u,v', but the arrays have no names"):
         read(LINE_X, LINE_Y, U, V, vectors="u,v")
-    named = {"x": LINE_X, "y": LINE_Y, "speed": np.hypot(U, V), "angle": np.arctan2(V, U)}
+    named = {"x": LINE_X, "y": LINE_Y, "length": np.hypot(U, V), "angle": np.arctan2(V, U)}
     for arrays in ((named,), tuple(named.values())):
         with pytest.raises(FieldError, match=r"direction is 'angle'(;|, but .* no names)"):
             read(*arrays, direction="angle")

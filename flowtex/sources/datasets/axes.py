@@ -18,6 +18,7 @@ from flowtex.field.options import OF_MESHES, FieldOptions
 from flowtex.remedies import Remedy
 from flowtex.sources.datasets import labels
 from flowtex.sources.datasets.levels import LEVELS, pressure_unit, surface_level
+from flowtex.sources.datasets.space_planes import letters_of
 from flowtex.sources.notices import Record
 
 if TYPE_CHECKING:
@@ -206,6 +207,9 @@ def horizontal_dims(array: xr.DataArray) -> tuple[str, ...]:
         [d for d in free if d in axes.get(kind, ())] or [d for d in free if pattern.match(d)]
         for kind, pattern in (("Y", ROWS), ("X", COLUMNS))
     )
+    letters = letters_of(free)
+    if len(free) == 2 and letters.keys() == {"y", "z"}:
+        return letters["z"], letters["y"]
     if len(free) == 2 and (not rows or not columns or rows[-1] == columns[-1]):
         if len(rows) == 1 and rows != columns:
             return rows[0], next(d for d in free if d != rows[0])

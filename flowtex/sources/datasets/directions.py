@@ -54,6 +54,8 @@ OF_SPEED = re.compile(r"(^|_)(speed|magnitude|mag|direction|dir|angle|from|to)(?
 TURNS = re.compile(r"(^|_)(direction|dir)(_\w+)?$|^w(d|dir)\w*$|^dir\w*$", re.I)
 #: Names of angles that are not names of directions.
 ANGLES = re.compile(r"^(angle|phase|arg|argument|phi|theta)(_?\d*|_\w+)$|_angle$", re.I)
+#: Names of angles that are those of a speed beside them, whatever it is called.
+PLAIN_ANGLES = re.compile(r"angles?|(flow|vel|velocity)_angle", re.I)
 #: Words for angles from x or from east.
 FROM_X = re.compile(
     r"(counter|anti)[- ]?clockwise|mathematic|from (the )?(positive )?(east|\+?x)\b", re.I

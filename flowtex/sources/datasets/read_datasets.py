@@ -46,6 +46,7 @@ from flowtex.sources.datasets.coordinates import LATITUDE, LONGITUDE
 from flowtex.sources.datasets.flow import Flow, read_flow
 from flowtex.sources.datasets.masks import WET
 from flowtex.sources.datasets.named_places import placed_on
+from flowtex.sources.datasets.space_planes import SpacePlane, plane_of
 from flowtex.sources.datasets.values import (
     NOTABLE_GAPS,
     LateGaps,
@@ -345,7 +346,8 @@ def _placed(flow: Flow, projection: str | None, *, regions: bool) -> tuple[Place
     mesh = flow.mesh
     if mesh is None:
         if not places.is_earth:
-            return PlaneNodes(np.stack([places.a, places.b], axis=-1)), _units(flow)
+            positions = np.stack([places.a, places.b], axis=-1)
+            return PlaneNodes(positions, _space_plane(flow)), _units(flow)
         torn = None
         if not regions:
             torn = torn_grid(places, projection)
@@ -355,13 +357,25 @@ def _placed(flow: Flow, projection: str | None, *, regions: bool) -> tuple[Place
         on_grid = on_map(places, projection)
         return on_grid, {"periodic": on_grid.periodic, **_units(flow)}
     if not mesh.is_earth:
-        return PlaneNodes(mesh.positions), {"triangles": mesh.triangles[0], **_units(flow)}
+        nodes_in_plane = PlaneNodes(mesh.positions, _space_plane(flow))
+        return nodes_in_plane, {"triangles": mesh.triangles[0], **_units(flow)}
     nodes = mesh_on_map(mesh.a, mesh.b, mesh.triangles[0], places, projection)
     if nodes.lost:
         text = f"{nodes.lost:,} triangles are left out, because the map cuts them, as at a pole"
         whole = Remedy("globe", value=True, aim="to see all of them,")
         flow.record("surface", text, whole, notable=True)
     return nodes, {"triangles": nodes.triangles, **_units(flow)}
+
+
+def _space_plane(flow: Flow) -> SpacePlane | None:
+    """Return the plane across x or y of a flow in space; ``None`` for the plane of x and y."""
+    if flow.mesh is not None:
+        plane = plane_of(flow.mesh.x, flow.mesh.y)
+    else:
+        plane = plane_of(*flow.pair.u.coords.values())
+    if plane is not None:
+        flow.record("coordinates", f"x and y are along the plane {plane} in space")
+    return plane
 
 
 def _note_fold(flow: Flow) -> None:

@@ -27,6 +27,7 @@ from flowtex.sources.datasets.directions import (
     MAGNITUDES,
     MEANINGS,
     OF_SPEED,
+    PLAIN_ANGLES,
     POLAR,
     SPEEDS,
     SPHERICAL,
@@ -35,6 +36,7 @@ from flowtex.sources.datasets.directions import (
     convention,
 )
 from flowtex.sources.datasets.masks import LAND, SEA
+from flowtex.sources.datasets.space_planes import partners_along
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -281,7 +283,8 @@ def find_pairs(datasets: Sequence[xr.Dataset]) -> list[Pair]:
         for array in ds.data_vars.values():
             if _may_be_component(array):
                 arrays.append(array)
-    for partners in (PARTNERS, SECTION_PARTNERS):
+    planes = partners_along(arrays, list(map(horizontal_dims, arrays)))
+    for partners in (*planes, PARTNERS, SECTION_PARTNERS):
         if pairs := _cartesian(arrays, partners):
             return sorted(pairs, key=_order)
     return [*_speeds(arrays), *_curved(arrays), *_as_coordinates(arrays)]
@@ -314,7 +317,11 @@ def _cartesian(arrays: Sequence[xr.DataArray], partners: Mapping[str, str]) -> l
             if source != "name":
                 words = frozenset(_text(u, source).split("_"))
             for v in arrays if rank is not None else ():
-                if _text(v, source) == partner and _match(u, v) and not _crossed(u, v, arrays):
+                if (
+                    _text(v, source) == partner
+                    and _match(u, v)
+                    and not _crossed(u, v, arrays, partners)
+                ):
                     pair = Pair(u, v, _directions(u), why, rank or 0, words=words)
                     pairs.setdefault((u.name, v.name), pair)
     return list(pairs.values())
@@ -345,6 +352,8 @@ def _turns(speed: xr.DataArray, turn: xr.DataArray) -> bool:
     if not is_angle or turn.ndim != speed.ndim:
         return False
     if MAGNITUDES.search(_standard(speed)) and ANGLES.search(named):
+        return True
+    if SPEEDS.fullmatch(_standard(speed)) and PLAIN_ANGLES.fullmatch(named):
         return True
     first = ""
     if speed.attrs.get("standard_name", UNKNOWN) != UNKNOWN:
@@ -506,21 +515,27 @@ def _match(u: xr.DataArray, v: xr.DataArray) -> bool:
     return u.name != v.name and (len(kinds) == 1 or False not in kinds)
 
 
-def _crossed(u: xr.DataArray, v: xr.DataArray, arrays: Sequence[xr.DataArray]) -> bool:
+def _crossed(
+    u: xr.DataArray,
+    v: xr.DataArray,
+    arrays: Sequence[xr.DataArray],
+    partners: Mapping[str, str],
+) -> bool:
     """Return whether names say that two variables are of different pairs, as u10 and v100 are."""
+    firsts = {second: first for first, second in partners.items()}
     present = {_text(array, "name") for array in arrays}
     u_name = _text(u, "name")
     v_name = _text(v, "name")
-    partners_of_u = _name_partners(u_name, PARTNERS)
+    partners_of_u = _name_partners(u_name, partners)
     if v_name in partners_of_u:
         return False
-    partners_of_v = _name_partners(v_name, FIRST_OF)
+    partners_of_v = _name_partners(v_name, firsts)
     if (partners_of_u | partners_of_v) & present:
         return True
     # Without a number in its name, u may be a partner of any v.
     u_stem = re.sub(r"\d+", "", u_name)
     v_stem = re.sub(r"\d+", "", v_name)
-    return u_name != u_stem and v_stem in _name_partners(u_stem, PARTNERS)
+    return u_name != u_stem and v_stem in _name_partners(u_stem, partners)
 
 
 def are_partners(u: str, v: str) -> bool:

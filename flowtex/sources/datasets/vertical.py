@@ -26,6 +26,7 @@ from flowtex.sources.datasets.align import align, common
 from flowtex.sources.datasets.coordinates import LATITUDE, LONGITUDE, check_two_of_space
 from flowtex.sources.datasets.levels import is_pressure
 from flowtex.sources.datasets.select import are_partners, two_names, variable, velocity_unit
+from flowtex.sources.datasets.space_planes import is_marked
 from flowtex.sources.datasets.values import (
     Component,
     FillWords,
@@ -61,7 +62,7 @@ def is_vertical(array: xr.DataArray) -> bool:
 def is_section(datasets: Sequence[xr.Dataset], u: str, v: str) -> bool:
     """Return whether named components lie in a vertical section, not in a plane without units."""
     array = variable(datasets, v)
-    if not is_vertical(array) or are_partners(u, v):
+    if not is_vertical(array) or are_partners(u, v) or is_marked(array):
         return False
     named = []
     for c in array.coords.values():

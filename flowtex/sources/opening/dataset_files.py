@@ -60,13 +60,17 @@ JSON = (".json", ".geojson")
 TABLES = {
     ".csv": flow_text.read_columns,
     ".txt": flow_text.read_text,
+    ".dat": flow_text.read_text,
+    ".tsv": flow_text.read_text,
     ".vec": tables.read_vec,
     ".tuv": flow_text.read_text,
     ".raw": flow_text.read_text,
     ".xy": flow_text.read_text,
 }
 #: Suffixes that files of other content have as well; folders are not searched for them.
-COMMON = (".txt", ".raw", ".xy", ".tif", ".tiff", ".asc")
+COMMON = (".txt", ".dat", ".raw", ".xy", ".tif", ".tiff", ".asc")
+#: The suffix of columns of numbers that Tecplot and PLOT3D have as well.
+DATA_SUFFIX = ".dat"
 #: Suffixes of files that are opened by xarray.
 SUFFIXES = (*NETCDF, *GRIB, *ZARR, *SELAFIN, *JSON, *TABLES, *rasters.DRIVERS)
 
@@ -412,7 +416,10 @@ def is_dataset_file(path: Path) -> bool:
     """Return whether a path is a file, or a Zarr store, that xarray opens."""
     if path.is_dir():
         return any((path / name).is_file() for name in ("zarr.json", ".zgroup", ".zmetadata"))
-    return path.suffix.lower() in SUFFIXES
+    suffix = path.suffix.lower()
+    if suffix == DATA_SUFFIX:
+        return path.is_file() and flow_text.has_columns(path)
+    return suffix in SUFFIXES
 
 
 def file_and_group(path: Path) -> tuple[Path, str]:

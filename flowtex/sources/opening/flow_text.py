@@ -10,7 +10,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
-from itertools import islice
+from itertools import filterfalse, islice
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -18,6 +18,7 @@ import numpy as np
 
 from flowtex._util.memory import check_memory
 from flowtex.errors import FieldError, import_extra
+from flowtex.sources.inspection.tecplot_files import is_tecplot_text
 from flowtex.sources.notices import NOTE
 from flowtex.sources.opening import tables
 
@@ -36,6 +37,8 @@ NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eEdD][-+]?\d+)?|[-+]?nan|[-+]?inf"
 SEPARATORS = ("\t", ";", ",", None)
 #: Beginnings of files whose columns are below other lines than their names alone.
 PREAMBLES = re.compile(r"\s*(%|#\s*DaVis|PIVlab|\[(Name|Data)\])", re.IGNORECASE)
+#: A line that is a comment.
+COMMENT = re.compile(r"\s*[#%!]")
 #: The line of CODAR that names the columns, and their names and units here.
 CODAR = re.compile(r"%TableColumnTypes:\s*(.*)")
 OF_CODAR = {"LOND": "lon", "LATD": "lat", "VELU": "u [cm/s]", "VELV": "v [cm/s]"}
@@ -125,10 +128,26 @@ def read_columns(path: Path) -> xr.Dataset:
     return tables.read_csv(path)
 
 
-def _begins_with_numbers(path: Path) -> bool:
-    """Return whether the first line of a file has numbers in place of names."""
+def has_columns(path: Path) -> bool:
+    """Return whether a file has rows of numbers, below one line of words at most and comments.
+
+    Files with such an ending may have other content, such as zones of Tecplot, or a grid of PLOT3D,
+    which begins with whole numbers.
+    """
     with path.open(encoding="utf-8-sig", errors="replace") as file:
-        first = next(filter(str.strip, file), "")
+        lines = islice(filter(str.strip, file), MOST_ABOVE)
+        rows = list(islice(filterfalse(COMMENT.match, lines), 2))
+    if not rows or is_tecplot_text(path):
+        return False
+    if _written(rows[0]) is not None:
+        return "." in rows[0]
+    return _written(rows[-1]) is not None
+
+
+def _begins_with_numbers(path: Path) -> bool:
+    """Return whether the first line of a file, below comments, has numbers in place of names."""
+    with path.open(encoding="utf-8-sig", errors="replace") as file:
+        first = next(filterfalse(COMMENT.match, filter(str.strip, file)), "")
     return _written(first) is not None
 
 

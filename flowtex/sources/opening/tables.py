@@ -28,6 +28,7 @@ from flowtex._util.whole_file import TemporaryFolder
 from flowtex.errors import FieldError, import_extra
 from flowtex.sources.datasets import is_dataset
 from flowtex.sources.datasets.coordinates import LATITUDE, LONGITUDE, OF_POINTS
+from flowtex.sources.datasets.space_planes import ATTRIBUTE
 from flowtex.sources.models.trajectories import IDENTITIES, TRAJECTORY
 from flowtex.sources.opening import component_axes
 from flowtex.sources.opening.column_levels import has_positions, with_one_level
@@ -43,6 +44,8 @@ ACROSS = re.compile(rf"^(x|x[-_ ]?coord\w*|x[-_ ]?pos\w*|easting|{OF_POINTS.form
 UPWARD = re.compile(rf"^(y|y[-_ ]?coord\w*|y[-_ ]?pos\w*|northing|{OF_POINTS.format('y')})$", re.I)
 LEVELS = re.compile(r"^(z|lev\w*|depth|height|altitude|plev|pressure)$", re.I)
 TIMES = re.compile(r"^(t|(valid_?)?(date_?)?time\w*|date)$", re.I)
+#: The new name of positions across a plane, which are the same everywhere.
+ACROSS_PLANE = "across the plane"
 #: Names and units of columns in the header of a .vec file.
 VEC_COLUMN = re.compile(r'"(\S+)\s*([^",]*)"')
 #: The column of flags of a .vec file.
@@ -118,7 +121,7 @@ def of_table(table: Any) -> xr.Dataset:
             "the tables of both, as in flowtex.show(u, v)"
         )
     frame, attributes = _plain(table)
-    columns = [str(c) for c in frame.columns]
+    columns = list(map(str, frame.columns))
     pair = _pair(columns, LONGITUDE, LATITUDE) or _pair(columns, ACROSS, UPWARD)
     if pair is None:
         raise FieldError(
@@ -127,40 +130,53 @@ def of_table(table: Any) -> xr.Dataset:
         )
     x, y = pair
     frame = frame.dropna(subset=[x, y])
-    _check_plane(frame, x, y)
+    changes, plane = _along_plane(frame, x, y)
+    frame = frame.rename(columns=changes)
+    attributes = {changes.get(name, name): value for name, value in attributes.items()}
+    frame = frame.drop(columns=ACROSS_PLANE, errors="ignore")
+    columns = list(map(str, frame.columns))
     planar = [c for c in columns if (ACROSS.match(c) or UPWARD.match(c)) and c not in pair]
     frame = frame.drop(columns=planar)  # the same positions on a map
     moving = _trajectories(frame, x, y)
     if moving is not None:
         return _with_attributes(moving, attributes, x, y)
     frame, axes = _axes(frame, x, y)
-    data = frame.select_dtypes(["number", "bool"]).columns
-    frame = frame[list(dict.fromkeys([*axes, y, x, *data]))]
-    points = frame.drop_duplicates([x, y])
-    if _is_grid(points[x].to_numpy(), points[y].to_numpy()):
-        ds = frame.set_index([*axes, y, x]).to_xarray()
-    else:
-        ds = _points(frame, points, axes, x, y)
+    ds = _nodes(frame, axes, x, y)
     ds = _with_attributes(ds, attributes, x, y)
+    if plane:
+        ds[x].attrs[ATTRIBUTE] = plane
     for name in axes:
         ds[name].attrs["axis"] = "T" if TIMES.match(name) else "Z"
     return ds
 
 
-def _check_plane(frame: Any, x: str, y: str) -> None:
-    """Raise a FieldError for points of a plane across x or y, as of a cut through a volume."""
+def _along_plane(frame: Any, x: str, y: str) -> tuple[dict[str, str], str]:
+    """Return new names of the positions along a plane across x or y, and its place.
+
+    Such are the points of a cut through a volume. The place is as in ``"x=0.5"``; it is empty for
+    the plane of x and y.
+
+    Raises
+    ------
+    FieldError
+        For points along one longitude or latitude.
+    """
     z = next((name for name in frame.columns if str(name).lower() == "z"), None)
     if z is None or frame[z].nunique() < 2:
-        return
-    for across, other in ((x, y), (y, x)):
-        if frame[across].nunique() == 1:
-            changes = {across: f"{across}_of_plane", other: x, z: y}
+        return {}, ""
+    for letter, across, other in (("x", x, y), ("y", y, x)):
+        if frame[across].nunique() != 1:
+            continue
+        place = float(frame[across].iloc[0])
+        if LONGITUDE.match(x):
+            changes = {across: f"{across}_of_plane", other: "x", z: "y"}
             raise FieldError(
-                f"all points have {across} = {frame[across].iloc[0]:g}; expected a plane of {x} "
-                f"and {y}. To draw that of {other} and {z}, rename the positions, and name the "
-                f'components along these, as in flowtex.show(df.rename(columns={changes}), u="v", '
-                'v="w")'
+                f"all points have {across} = {place:g}; expected a surface of {x} and {y}. To draw "
+                f"that of {other} and {z}, rename the positions, and name the components along "
+                f'these, as in flowtex.show(df.rename(columns={changes}), u="v", v="w")'
             )
+        return {across: ACROSS_PLANE, other: x, z: y}, f"{letter}={place!r}"
+    return {}, ""
 
 
 def _with_attributes(
@@ -292,6 +308,17 @@ def _times_in(frame: Any, time: str) -> Any:
         raise FieldError(
             f"the column {time!r} has {column.iloc[0]!r}; expected dates or numbers"
         ) from error
+
+
+def _nodes(frame: Any, axes: list[str], x: str, y: str) -> xr.Dataset:
+    """Return the columns of numbers on a grid, if rows are those of one, or at points."""
+    data = frame.select_dtypes(["number", "bool"]).columns
+    frame = frame[list(dict.fromkeys([*axes, y, x, *data]))]
+    points = frame.drop_duplicates([x, y])
+    if not _is_grid(points[x].to_numpy(), points[y].to_numpy()):
+        return _points(frame, points, axes, x, y)
+    grid: xr.Dataset = frame.set_index([*axes, y, x]).to_xarray()
+    return grid
 
 
 def _is_grid(a: AnyArray, b: AnyArray) -> bool:

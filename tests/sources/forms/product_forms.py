@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -13,6 +14,7 @@ from form_table import form, variants
 from known_flow import (
     DEGREES,
     Truth,
+    at_points,
     current,
     dates,
     earth,
@@ -387,21 +389,64 @@ def number_that_was_text_when_xarray_unpacked() -> Any:
     return ds
 
 
-@form(error=r'all points have x = 0.5.*df.rename\(columns=.*u="v", v="w"')
-def table_of_a_plane_across_x() -> Any:
-    """OpenFOAM and ParaView: a cut through a volume, whose points have one x."""
-    x, y = (a.ravel() for a in np.meshgrid(np.linspace(0, 3, 13), np.linspace(0, 2, 9)))
-    u, v = plane(x, y)
-    return pd.DataFrame({"x": 0 * x + 0.5, "y": x, "z": y, "u": 0 * u, "v": u, "w": v})
+#: Places along the planes of cuts through a volume, and their flow.
+CUT = [np.ravel(a) for a in np.meshgrid(np.linspace(0, 3, 13), np.linspace(0, 2, 9))]
 
 
-@form(options={"u": "v", "v": "w"})
-def table_of_a_plane_across_x_renamed() -> Any:
-    """As the error about it proposes."""
-    x, y = np.linspace(0, 3, 13), np.linspace(0, 2, 9)
-    table = table_of_a_plane_across_x()
-    table = table.rename(columns={"x": "x_of_plane", "y": "x", "z": "y"})
-    return table, in_plane(x, y)
+def cut_across(letter: str) -> dict[str, Any]:
+    """Return the columns of points of which one position is the same everywhere."""
+    u, v = plane(*CUT)
+    same = 0 * u + 0.5
+    if letter == "x":
+        return {"x": same, "y": CUT[0], "z": CUT[1], "u": same, "v": u, "w": v}
+    return {"x": CUT[0], "y": same, "z": CUT[1], "u": u, "v": same, "w": v}
+
+
+def cut_truth(letter: str, points: Any = None) -> Truth:
+    axes = {"x": (1, 2), "y": (0, 2)}[letter]
+    if points is None:
+        points = np.stack(CUT, axis=-1)
+    return at_points(points, axes=axes)
+
+
+@variants(["x", "y"], says="in space")
+def table_of_a_plane_across(letter: str) -> Any:
+    """OpenFOAM and ParaView: a cut through a volume, whose points have one x or y."""
+    return pd.DataFrame(cut_across(letter)), cut_truth(letter)
+
+
+@variants(["x", "y"], says="in space")
+def columns_of_a_plane_across(letter: str) -> Any:
+    """Points that are no lattice, as arrays by name, with names of OpenFOAM."""
+    columns = cut_across(letter)
+    keep = np.random.default_rng(1).permutation(len(CUT[0]))[:100]
+    names = dict(zip("uvw", ("U_x", "U_y", "U_z"), strict=True))
+    few = {names.get(key, key): values[keep] for key, values in columns.items()}
+    return few, cut_truth(letter, np.stack(CUT, axis=-1)[keep])
+
+
+@form(options={"vectors": "u,w"}, says="in space")
+def named_components_of_a_plane_across_y() -> Any:
+    """The unit of the positions is that of the columns."""
+    table = pd.DataFrame(cut_across("y"))
+    changes = {letter: f"{letter} [m]" for letter in "xyz"}
+    changes |= {letter: f"{letter} [m/s]" for letter in "uvw"}
+    return table.rename(columns=changes), replace(cut_truth("y"), unit="m", speed_unit="m/s")
+
+
+@form(error=r"all points have lon = 0.5.*df.rename\(columns=")
+def table_of_a_plane_along_a_meridian() -> Any:
+    table = pd.DataFrame(cut_across("x"))
+    return table.rename(columns={"x": "lon", "y": "lat"})
+
+
+@variants(["y", "x"])
+def dataset_of_a_plane_with_z(letter: str) -> Any:
+    """The components along the axes, though u and v exist as well, and z is upward."""
+    x, z = np.linspace(0, 3, 13), np.linspace(0, 2, 9)
+    columns = cut_across("x" if letter == "y" else "y")
+    shaped = {key: (("z", letter), columns[key].reshape(9, 13)) for key in "uvw"}
+    return xr.Dataset(shaped, {letter: x, "z": z}), in_plane(x, z)
 
 
 @form(error='open_dataset."refs.json", engine="kerchunk"')

@@ -18,6 +18,7 @@ import time_forms
 import topology_forms
 import triangle_forms
 import turned_forms
+import user_forms
 import value_forms
 from form_table import FORMS, judge, read
 from known_flow import check, in_plane, lab, plane, ratio
@@ -38,6 +39,7 @@ MODULES = (
     topology_forms,
     triangle_forms,
     turned_forms,
+    user_forms,
     value_forms,
 )
 
