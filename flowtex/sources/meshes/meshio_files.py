@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from flowtex.errors import FieldError, import_package
+from flowtex.sources.inspection.exodus_files import is_of_meshio
 
 if TYPE_CHECKING:
     import pyvista as pv
@@ -19,6 +20,8 @@ SUFFIXES = (".msh", ".med", ".h5m", ".su2", ".mesh", ".bdf", ".nas", ".avs")
 ABAQUS_SUFFIX = ".inp"
 #: First character of files of Abaqus, where AVS has a number or a comment.
 ABAQUS = b"*"
+#: Endings of Exodus, which PyVista reads unless meshio wrote it.
+EXODUS_SUFFIXES = (".e", ".ex2", ".exii", ".exo")
 #: Sign in the names of tags that meshio makes of groups of cells, as in ``su2:tag``.
 TAG = ":"
 #: Bytes that are read of a file to tell them apart.
@@ -28,6 +31,8 @@ HEAD_BYTES = 80
 def is_meshio_file(path: Path) -> bool:
     """Return whether a file is one that meshio reads and PyVista does not."""
     suffix = path.suffix.lower()
+    if suffix in EXODUS_SUFFIXES:
+        return is_of_meshio(path)
     if suffix != ABAQUS_SUFFIX:
         return suffix in SUFFIXES
     with path.open("rb") as file:

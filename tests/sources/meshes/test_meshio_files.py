@@ -5,6 +5,7 @@ from __future__ import annotations
 import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from flowtex import FlowField
@@ -47,3 +48,26 @@ def test_abaqus_is_told_from_avs(tmp_path: Path) -> None:
     path.write_text(f"*HEADING\nplate\n*NODE\n{nodes}*ELEMENT, TYPE=CPS3\n1, 1, 2, 3\n*END\n")
     with pytest.raises(FieldError, match="it has a mesh without arrays"):
         FlowField.from_file(path)
+
+
+@pytest.mark.parametrize("kind", ["vector", "components"])
+def test_exodus_of_meshio_has_its_values(kind: str, tmp_path: Path) -> None:
+    """VTK alone reads zeros."""
+    meshio = pytest.importorskip("meshio")
+    pytest.importorskip("netCDF4")
+    x, y = (part.ravel() for part in np.meshgrid(np.arange(4.0), np.arange(3.0)))
+    points = np.column_stack([x, y, 0 * x])
+    corners = np.arange(12).reshape(3, 4)
+    quads = [corners[:-1, :-1], corners[:-1, 1:], corners[1:, 1:], corners[1:, :-1]]
+    cells = [("quad", np.stack(quads, axis=-1).reshape(-1, 4))]
+    velocity = np.column_stack([1 + y, -0.5 * x, 0 * x])
+    arrays = {"U": velocity}
+    if kind == "components":
+        arrays = {"vx": velocity[:, 0], "vy": velocity[:, 1]}
+    path = tmp_path / "flow.e"
+    meshio.write(path, meshio.Mesh(points, cells, point_data=arrays))
+    field = FlowField.from_file(path)
+    for place, vector in zip(points, velocity, strict=True):
+        nearest = np.argmin(np.linalg.norm(field.points.reshape(-1, 3) - place, axis=1))
+        found = np.asarray(field.velocity[0]).reshape(-1, 3)[nearest]
+        np.testing.assert_allclose(found, vector, atol=1e-6)
