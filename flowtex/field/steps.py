@@ -199,6 +199,10 @@ def map_steps(steps: Steps, function: Callable[[Floats], Floats]) -> Steps:
     """Apply a function to each step (J, I, ...) of an array; lazy steps are mapped when read."""
     if isinstance(steps, LazySteps):
         return steps.map(function)
+    if len(steps) == 1:
+        only = function(steps[0])
+        if not np.may_share_memory(only, steps):
+            return only[None]
     return np.stack([function(step) for step in steps])
 
 

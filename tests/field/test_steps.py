@@ -62,6 +62,15 @@ def test_steps_are_indexed_as_an_array() -> None:
     assert np.array_equal(view[0], values[2, 1]) and read == [2]
 
 
+def test_a_single_step_is_copied_only_if_it_is_the_same_memory() -> None:
+    values = np.ones((1, 3, 4))
+    made = np.zeros((3, 4))
+    assert np.shares_memory(map_steps(values, lambda step: made), made)
+    for mapped in (map_steps(values, np.asarray), map_steps(values, lambda step: step[::-1])):
+        assert isinstance(mapped, np.ndarray)
+        assert not np.shares_memory(mapped, values)
+
+
 @pytest.fixture(scope="module")
 def series() -> FlowField:
     """A vortex that wanders through eight steps."""

@@ -212,9 +212,13 @@ def _placed(
         used = same[corners]
     is_used = np.zeros(len(p), dtype=bool)
     is_used[used] = True
-    number = np.where(is_used, np.cumsum(is_used) - 1, -1)[same]
-    given = np.flatnonzero(number >= 0)
-    valid = np.bincount(number[given], ok[given]) > 0
+    if is_used.all() and not is_joined.any():
+        number = given = np.arange(len(p))
+        valid = ok
+    else:
+        number = np.where(is_used, np.cumsum(is_used) - 1, -1)[same]
+        given = np.flatnonzero(number >= 0)
+        valid = np.bincount(number[given], ok[given]) > 0
     if is_used.all():
         joined = TriangleSurface(p[None], corners.copy(), valid[None], on_globe=on_globe)
         joined.__dict__["uneven"] = uneven

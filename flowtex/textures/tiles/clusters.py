@@ -18,7 +18,7 @@ from typing import Any, overload
 import numpy as np
 
 from flowtex._util.array_types import Bools, Floats, Indices
-from flowtex._util.arrays import bounds, dot, first_places, norm, numbered
+from flowtex._util.arrays import bounds, dot, first_places, norm, numbered, row_blocks
 from flowtex._util.forks import ProcessLock
 from flowtex._util.progress import finish
 from flowtex.errors import FieldError
@@ -114,8 +114,9 @@ class Clusters:
             joined = places[triangles]
         around = incidence(joined, field.shape[1])
         areas = norm(crosses)
-        sides = _sides(around, areas, surface.extent)
-        binned, normals = _without_noise(around, field.points[0], crosses, areas)
+        share = np.bincount(joined.ravel(), minlength=field.shape[1])
+        sides = _sides(around, share, areas, surface.extent)
+        binned, normals = _without_noise(around, share, field.points[0], crosses, areas)
         face = _faces(surface)
         if surface.has_faces:
             sides, normals, binned = (values[places] for values in (sides, normals, binned))
@@ -138,12 +139,15 @@ class Clusters:
             return np.asarray(self.places.take(self.triangles))
         return self.triangles
 
-    def coarser(self, steps: int = 1) -> Clusters:
+    def coarser(self, steps: int = 1, boxes: Indices | None = None) -> Clusters:
         """Return a coarser level, without triangles if all are smaller than the bins.
 
-        It is the next one, or one farther by ``steps``, without those between.
+        It is the next one, or one farther by ``steps``, without those between. Its :meth:`boxes`
+        may be known.
         """
-        faces, edges, bins = self._binned(steps)
+        if boxes is None:
+            boxes = self.boxes(steps)
+        faces, edges, bins = self._binned(steps, boxes)
         cluster, corners, cells, bins = self._faced(bins, faces)
         count = len(bins)
         _, first, at = np.unique(bins, return_index=True, return_inverse=True)
@@ -181,9 +185,8 @@ class Clusters:
         level.__dict__["part"] = self.part[member]
         return level
 
-    def _binned(self, steps: int) -> tuple[Indices, Indices, Indices]:
+    def _binned(self, steps: int, boxes: Indices) -> tuple[Indices, Indices, Indices]:
         """Return face, edge, and bin of each node, (n,) each, for a coarser level."""
-        boxes = self.boxes(steps)
         faces, edges = self._separate(boxes)
         bins = self._bins(boxes, edges)
         if steps == 1:
@@ -221,15 +224,15 @@ class Clusters:
         fresh = np.where(used, np.cumsum(used) - 1, -1)
         return fresh[cluster], fresh[corners], cells, kinds[used] // count
 
-    def boxes(self, steps: int) -> Indices:
-        """Return the number of the box of space of each node, (n,), from 0, for a coarser level."""
-        sides = 2.0 ** (steps - 1) * self.sides
+    def boxes(self, steps: int, nodes: Indices | slice = slice(None)) -> Indices:
+        """Return the box of space of some nodes, (n,), numbered from 0, for a coarser level."""
+        sides = 2.0 ** (steps - 1) * self.sides[nodes]
         lowest = bounds(self.binned)[0]
         key = np.zeros(len(sides), dtype=np.int64)
         if sides.min() < sides.max():
             key = np.rint(np.log2(sides / sides.min())).astype(np.int64)
         for axis in range(3):
-            at = ((self.binned[:, axis] - lowest[axis]) / sides).astype(np.int64)
+            at = ((self.binned[nodes, axis] - lowest[axis]) / sides).astype(np.int64)
             key *= int(at.max()) + 1
             key += at
         return numbered(key)[1]
@@ -269,12 +272,7 @@ class Clusters:
         largest[within[order]] = order  # the last value written stays
         small = size < SHEET_SHARE * size[largest[within]]
         target = np.where(small, largest[within], np.arange(len(size)))
-        is_small = small.take(at)
-        pairs = []
-        for k in range(3):
-            apart = np.flatnonzero(is_small[:, k] != is_small[:, k - 1])
-            pairs.append(np.stack([corners[apart, k], corners[apart, k - 1]]))
-        sides = np.concatenate(pairs, axis=1)
+        sides = _unlike_sides(small, at, corners)
         node, beside = np.where(small[sheet[sides[0]]], sides, sides[::-1])
         joins = (self.border[node] == self.border[beside]) & (edge[node] == edge[beside])
         target[sheet[node[joins]]] = sheet[beside[joins]]
@@ -333,15 +331,16 @@ class Levels(Sequence[Clusters]):
         """Make the finest level, and the last two; yield before each of them."""
         yield
         finest = self._made[0] = Clusters.of(field)
-        last = _steps_to(finest, nodes) - 1
+        last, boxes = _last_from(finest, nodes)
         while last > 0:
             yield
-            self._made[last] = finest.coarser(last)
+            self._made[last] = finest.coarser(last, boxes)
+            boxes = None
             if 0 < self.nodes(last) < MOST_LEFT**last * self.nodes(0):
                 break
             del self._made[last]
             last -= 1
-        self._last = max(last, 0)
+        self._last = last
         while self.nodes(self._last) > nodes:
             yield
             coarser = self._made[self._last].coarser()
@@ -378,18 +377,27 @@ class Levels(Sequence[Clusters]):
         return int(self.nodes(0) * factor**level)
 
 
-def _steps_to(finest: Clusters, nodes: int) -> int:
-    """Return the least steps to a level with at most about this many nodes, 0 for the finest."""
+def _last_from(finest: Clusters, nodes: int) -> tuple[int, Indices | None]:
+    """Return the least steps to a level of which the next has at most about this many nodes.
+
+    The second value has its boxes, ``None`` for the finest level.
+    """
     count = finest.field.shape[1]
     steps = 0
+    boxes = None
     while count > nodes:
         # Every step leaves at least about a quarter.
         steps = max(steps + 1, int(np.ceil(np.log2(count / nodes) / 2)))
-        boxes = int(finest.boxes(steps).max()) + 1
-        if boxes >= MOST_LEFT * count:
+        some: Indices | slice = slice(None)
+        if steps > 1:
+            boxes = finest.boxes(steps - 1)
+            # Boxes of the next level contain whole ones, and these are far fewer than nodes.
+            some = first_places(boxes)
+        left = int(finest.boxes(steps, some).max()) + 1
+        if left >= MOST_LEFT * count:
             break
-        count = boxes
-    return steps
+        count = left
+    return max(steps - 1, 0), boxes
 
 
 def _are_opposite(bins: Indices, away: Bools, normals: Floats) -> Bools:
@@ -407,7 +415,7 @@ def _are_opposite(bins: Indices, away: Bools, normals: Floats) -> Bools:
 
 
 def _without_noise(
-    around: Any, points: Floats, crosses: Floats, areas: Floats
+    around: Any, share: Indices, points: Floats, crosses: Floats, areas: Floats
 ) -> tuple[Floats, Floats]:
     """Return positions and normals (N, 3); where many triangles are turned, means around.
 
@@ -418,7 +426,7 @@ def _without_noise(
     is_rough = norm(normals) < EVEN_SHARE * total
     if np.count_nonzero(is_rough) < ROUGH_SHARE * np.count_nonzero(total):
         return points, normals
-    share = np.maximum(around.sum(axis=0), 1)
+    share = np.maximum(share, 1)
     values = np.hstack([points, normals])
     for _ in range(SMOOTHING):
         means = (around.T @ (around @ values)) / (3 * share[:, None])
@@ -448,21 +456,47 @@ def _border_nodes(surface: TriangleSurface) -> Bools:
 
 def _connected_within(cluster: Indices, corners: Indices) -> tuple[Indices, Indices]:
     """Return numbers of connected nodes of the same cluster, (n,), and those of corners (M, 3)."""
-    at = cluster.take(corners)
-    is_linked = [at[:, k] == at[:, k - 1] for k in range(3)]
     # The first sides connect nearly all.
-    first = np.flatnonzero(is_linked[0])
-    sheet = connected_items(corners[first, 0], corners[first, 2], len(cluster))
-    at = sheet.take(corners)
-    pairs = []
-    for k in (1, 2):
-        others = np.flatnonzero(is_linked[k] & (at[:, k] != at[:, k - 1]))
-        pairs.append(np.stack([at[others, k], at[others, k - 1]]))
+    first = np.empty(len(corners), dtype=bool)
+    for block in row_blocks(len(corners), 1):
+        within = cluster.take(corners[block, ::2])
+        first[block] = within[:, 0] == within[:, 1]
+    linked = np.flatnonzero(first)
+    sheet = connected_items(corners[linked, 0], corners[linked, 2], len(cluster))
+    at = np.empty(corners.shape, dtype=sheet.dtype)
+    pairs = [np.empty((2, 0), dtype=sheet.dtype)]
+    for block in row_blocks(len(corners), 1):
+        within = cluster.take(corners[block])
+        sheets = sheet.take(corners[block])
+        at[block] = sheets
+        for k in (1, 2):
+            is_linked = within[:, k] == within[:, k - 1]
+            others = np.flatnonzero(is_linked & (sheets[:, k] != sheets[:, k - 1]))
+            pairs.append(np.stack([sheets[others, k], sheets[others, k - 1]]))
     begins, ends = np.concatenate(pairs, axis=1)
     if not len(begins):
         return sheet, at
     merged = connected_items(begins, ends, int(sheet.max()) + 1)
-    return merged[sheet], merged.take(at)
+    for block in row_blocks(len(corners), 1):
+        at[block] = merged.take(at[block])
+    return merged[sheet], at
+
+
+def _unlike_sides(marked: Bools, at: Indices, corners: Indices) -> Indices:
+    """Return ends (2, n) of sides of triangles (M, 3), between marked sheets and others.
+
+    ``at`` has the sheets of the corners, (M, 3).
+    """
+    apart = np.empty((3, len(corners)), dtype=bool)
+    for block in row_blocks(len(corners), 1):
+        is_marked = marked.take(at[block])
+        for k in range(3):
+            apart[k, block] = is_marked[:, k] != is_marked[:, k - 1]
+    pairs = []
+    for k in range(3):
+        sides = np.flatnonzero(apart[k])
+        pairs.append(np.stack([corners[sides, k], corners[sides, k - 1]]))
+    return np.concatenate(pairs, axis=1)
 
 
 def _connected_sheets(corners: Indices, count: int) -> Indices:
@@ -545,10 +579,12 @@ def _averaged(field: FlowField, number: Indices, places: Indices, triangles: Ind
     )
 
 
-def _sides(around: Any, areas: Floats, extent: float) -> Floats:
-    """Return the sides of the first bins, (N,), in proportion to edges; needles are not counted."""
+def _sides(around: Any, share: Indices, areas: Floats, extent: float) -> Floats:
+    """Return the sides of the first bins, (N,), in proportion to edges; needles are not counted.
+
+    ``share`` (N,) is the number of triangles around a node.
+    """
     size = np.sqrt(areas)
-    share = around.sum(axis=0)
     for _ in range(SMOOTHING):
         nodal = np.divide(around.T @ size, share, out=np.zeros(len(share)), where=share > 0)
         size = (around @ nodal) / 3

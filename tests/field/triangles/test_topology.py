@@ -47,6 +47,14 @@ def test_a_triangle_is_repeated_from_its_second_place_on(
     assert found[len(triangles) :].all()
 
 
+@pytest.mark.parametrize("count", [0, 1, 5, 500])
+def test_triangles_around_one_node_are_repeated_only_if_equal(count: int) -> None:
+    ring = np.arange(1, count + 1)
+    fan = np.stack([np.zeros_like(ring), ring, ring + 1], axis=-1)
+    assert not repeated(fan).any()
+    assert repeated(np.concatenate([fan, fan[-1:, ::-1]])).sum() == min(count, 1)
+
+
 def test_nodes_that_rounding_moved_are_one() -> None:
     points, triangles = soup(np.random.default_rng(1), sphere(2))
     points = points + np.random.default_rng(2).uniform(-1e-11, 1e-11, points.shape)
