@@ -34,6 +34,7 @@ from flowtex.sources.opening.dataset_files import (
     as_datasets,
     common_name,
     dataset_paths,
+    of_tree,
     open_datasets,
 )
 from flowtex.sources.opening.tables import as_dataset
@@ -432,12 +433,13 @@ def _moments_of(datasets: Any) -> tuple[list[Any], int]:
     """Return the times of trajectories among datasets, and the number of the fullest one."""
     several = isinstance(datasets, (list, tuple))
     for item in datasets if several else [datasets]:
-        try:
-            found = moments_of(as_dataset(item, several=several))
-        except FieldError:  # such as a tree
-            continue
-        if found[0]:
-            return found
+        if hasattr(item, "subtree"):
+            groups = of_tree(item)
+        else:
+            groups = [as_dataset(item, several=several)]
+        for found in map(moments_of, groups):
+            if found[0]:
+                return found
     return [], 0
 
 

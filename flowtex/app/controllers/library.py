@@ -38,6 +38,7 @@ from flowtex.sources.meshes.plot3d import SURFACE_SUFFIXES as WITHOUT_VECTORS
 from flowtex.sources.open_source import DatasetSource, FlowSource, MeshSource
 from flowtex.sources.opening.dataset_files import COMMON, common_name, is_dataset_file
 from flowtex.sources.opening.dataset_files import SUFFIXES as EARTH_SUFFIXES
+from flowtex.sources.plain_arrays import are_labelled, is_plain
 from flowtex.sources.read_files import Identity, file_identity, members_of
 from flowtex.sources.remote import open_remote, prepare_readers
 
@@ -162,7 +163,7 @@ class Library:
 
     @classmethod
     def of(cls, *flows: Any, folder: str | Path | None = None, **options: Any) -> Library:
-        """Make a library of fields, meshes, files, or one folder.
+        """Make a library of fields, meshes, datasets, arrays, files, or one folder.
 
         A list of paths is one flow whose files belong together.
 
@@ -329,11 +330,13 @@ class Library:
 
 
 def _source_of(flow: Any, options: dict[str, Any]) -> FlowSource:
-    """Return the source of a dataset, a field or a mesh."""
+    """Return the source of a dataset, arrays, a field or a mesh."""
     given = {}
     for name, value in options.items():
         if value is not None:
             given[name] = value
+    if are_labelled(flow) or (is_plain(flow) and not is_dataset(flow)):
+        return MeshSource(read_field(flow, FieldOptions.of(**given)))
     if is_dataset(flow) and not given:
         return DatasetSource(flow)
     if isinstance(flow, FlowField) or not given:

@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+from flow_at_points import check_at
 from known_flow import Truth, check
 
 from flowtex import FlowField
@@ -85,6 +86,7 @@ def judge(one: Form, folder: Path) -> None:
         found = read(data, **one.options)
         if truth is not None:
             check(found, truth)
+            check_at(found, truth)
     except FieldError as error:
         text = "\n".join([str(error), *getattr(error, "__notes__", ())])
         if not one.error:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import warnings
+from importlib import import_module
 from pathlib import Path
 
 import numpy as np
@@ -78,6 +79,7 @@ def telemac(folder: Path) -> Made:
     )
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
+        import_module("xarray_selafin.xarray_backend")  # has the accessor
         ds.selafin.write(str(folder / "telemac.slf"))
     return {}, truth(undated=True)
 

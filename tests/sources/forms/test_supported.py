@@ -16,6 +16,7 @@ import product_files
 import pytest
 import raster_files
 import text_forms
+from flow_at_points import check_at
 from known_flow import check
 from supported import ROWS, Supported, drawn
 
@@ -43,4 +44,6 @@ def test_line_of_supported_data_draws_the_flow(
         pytest.importorskip(row.needs.replace("-", "_"))
     monkeypatch.chdir(tmp_path)
     variables, truth = row.make(tmp_path)
-    check(drawn(row.code, variables), truth)
+    field = drawn(row.code, variables)
+    check(field, truth)
+    check_at(field, truth)
