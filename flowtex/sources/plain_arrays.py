@@ -48,6 +48,9 @@ VELOCITIES = (
     *(("vx", "vy", "vz"), ("vx", "vy"), ("ux", "uy")),
     ("velocity",),
 )
+#: Names of the places of points, (N, 2 or 3), and of their velocities, in small letters.
+POINTS = ("points", "positions", "position", "pos", "coordinates", "coords", "xyz", "xy")
+POINT_VELOCITIES = ("velocities", "velocity", "vel", "vectors")
 TIMES = ("time", "times", "t")  #: Names of times, in small letters.
 
 
@@ -285,6 +288,10 @@ def _read_named(data: Any, options: FieldOptions, scalars: Mapping[str, Any]) ->
     if len({np.shape(data[key]) for key in known.values()}) == 1 and np.ndim(data[keys[0]]) == 1:
         frame = _frame_of(data, list(known.values()))
         return field_of_dataset(frame, replace(options, uncertainty=None))
+    columns = _columns_of_points(data, known, options.vectors)
+    if columns:
+        frame = import_extra("pandas", "xarray").DataFrame(columns)
+        return field_of_dataset(frame, replace(options, vectors=None, uncertainty=None))
     lon_lat = _first(EARTH_PLACES, known)
     places = _first(PLACES, known) or lon_lat
     velocity = _velocity_names(options, known)
@@ -353,6 +360,38 @@ def _frame_of(data: Any, names: list[str]) -> Any:
     for name, array in zip(names, arrays, strict=True):
         columns[name] = host_array(name, array)
     return import_extra("pandas", "xarray").DataFrame(columns)
+
+
+def _columns_of_points(
+    data: Any, known: Mapping[str, str], vectors: str | None
+) -> dict[str, AnyArray]:
+    """Return the columns of points (N, 2 or 3) and their vectors; empty for other arrays."""
+    places = _first_shaped(data, known, POINTS)
+    names = POINT_VELOCITIES
+    if vectors is not None:
+        names = (vectors.lower(),)
+    velocity = _first_shaped(data, known, names)
+    if not places or not velocity or len(data[places]) != len(data[velocity]):
+        return {}
+    columns = {}
+    for key, letters in ((places, "xyz"), (velocity, "uvw")):
+        values = host_array(key, data[key])
+        unit = unit_text(data[key])
+        for letter, column in zip(letters, values.T, strict=False):
+            columns[f"{letter} [{unit}]" if unit else letter] = column
+    for key in known.values():
+        if key not in columns and np.shape(data[key]) == (len(data[places]),):
+            columns[key] = host_array(key, data[key])
+    return columns
+
+
+def _first_shaped(data: Any, known: Mapping[str, str], names: Iterable[str]) -> str:
+    """Return the first of several names of an array (N, 2 or 3); empty without one."""
+    for name in names:
+        key = known.get(name, "")
+        if key and np.ndim(data[key]) == 2 and np.shape(data[key])[1] in (2, 3):
+            return key
+    return ""
 
 
 def _by_position(places: list[Any], velocity: list[Any]) -> tuple[Any, ...]:

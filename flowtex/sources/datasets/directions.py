@@ -42,7 +42,7 @@ MEANINGS = {
 _UNITS = r"(_(kn|kts?|knots?|mps|m_?s|cm_?s|km_?h|kmph|kph|mph))?"
 #: Names of speeds.
 SPEEDS = re.compile(
-    rf"^(.*_)?(speed|magnitude|mag){_UNITS}$|^(w|c)?(spd|spe)\d*m?{_UNITS}$|^ws\d*m?{_UNITS}$|"
+    rf"^(.*_)?(speed|magnitude|mag)(_\d+m)?{_UNITS}$|^(w|c)?(spd|spe)\d*m?{_UNITS}$|^ws\d*m?{_UNITS}$|"
     r"^wspd\w*$",
     re.I,
 )

@@ -52,13 +52,24 @@ def component_names(names: Iterable[str]) -> dict[str, str]:
         letter = match[2] or match[3]
         order = ORDERS[letter in "ijk"]
         vectors.setdefault((match[1], order), {})[order.index(letter)] = name
-    changes = {}
+    changes = _numbered_places(names)
     for (vector, _), parts in vectors.items():
         if not {0, 1} <= set(parts):
             continue
         new = {name: _component(vector, number) for number, name in parts.items()}
         if not set(new.values()) & set(names):
             changes.update(new)
+    return changes
+
+
+def _numbered_places(names: list[str]) -> dict[str, str]:
+    """Return new names of the places x1, x2 and x3, unless other columns are x and y."""
+    if not {"x1", "x2"} <= set(names) or {"x", "y", "y1", "y2", "lon", "lat"} & set(names):
+        return {}
+    changes = {}
+    for number, letter in enumerate("xyz", start=1):
+        if f"x{number}" in names and letter not in names:
+            changes[f"x{number}"] = letter
     return changes
 
 

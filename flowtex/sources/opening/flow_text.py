@@ -33,6 +33,8 @@ HEAD_CHARACTERS = 200
 MOST_ABOVE = 200
 #: A number with a decimal point.
 NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eEdD][-+]?\d+)?|[-+]?nan|[-+]?inf", re.IGNORECASE)
+#: Exponents of double precision as Fortran writes them.
+EXPONENTS = str.maketrans("dD", "ee")
 #: Characters between columns; ``None`` for white space.
 SEPARATORS = ("\t", ";", ",", None)
 #: Beginnings of files whose columns are below other lines than their names alone.
@@ -235,7 +237,7 @@ def _rows(path: Path, layout: Layout) -> Iterator[list[str]]:
             if not is_row or len(parts) != layout.columns:
                 raise tables.cut_row(number, parts, f"{len(parts)} of {layout.columns} numbers")
             begun = True
-            yield parts
+            yield "\t".join(parts).translate(EXPONENTS).split("\t")
 
 
 def _by_order(frame: Any) -> tuple[Any, str]:

@@ -58,6 +58,11 @@ FEWEST_CELLS = 0.4
 FEWEST_ROWS = 0.5
 #: Share of identities with moving positions below which identities are stations.
 FEWEST_MOVING = 0.5
+#: Fewest points whose heights are compared.
+FEWEST_OF_VOLUME = 30
+#: Mean step of heights between neighbours, in standard deviations of the heights, from which on
+#: points fill a volume. It is 1.1 for random points, and small on a surface.
+VOLUME_STEP = 0.5
 #: Most bytes in memory for one byte of text: in JSON each "[]," is a list.
 TEXT_GROWTH = 24
 #: Most letters of a row that a message repeats.
@@ -332,7 +337,30 @@ def _is_grid(a: AnyArray, b: AnyArray) -> bool:
     return bool(cells.sum() >= FEWEST_CELLS * len(a))
 
 
+def _check_surface(points: Any, x: str, y: str) -> None:
+    """Raise a FieldError for points that fill a volume, of which a surface would be meaningless."""
+    z = next((name for name in points.columns if str(name).lower() == "z"), None)
+    if z is None or LONGITUDE.match(x) or len(points) < FEWEST_OF_VOLUME:
+        return
+    from scipy.spatial import KDTree
+
+    places = points[[x, y]].to_numpy(dtype=float)
+    heights = points[z].to_numpy(dtype=float)
+    size = np.maximum(np.ptp(places, axis=0), np.finfo(float).tiny)
+    neighbours = KDTree(places / size).query(places / size, k=2)[1][:, 1]
+    steps = np.abs(heights[neighbours] - heights)
+    if np.nanmean(steps) > VOLUME_STEP * np.nanstd(heights) > 0:
+        low, middle, high = np.nanquantile(heights, (0.45, 0.5, 0.55))
+        raise FieldError(
+            f"the points fill a volume: {z} of neighbours in {x} and {y} differs by "
+            f"{np.nanmean(steps):.3g} on average; expected points of a surface. Choose a layer, as "
+            f"in df[df[{z!r}].between({low:.4g}, {high:.4g})] around {middle:.4g}, or drop {z} to "
+            "draw all points in one plane"
+        )
+
+
 def _points(frame: Any, points: Any, axes: list[str], x: str, y: str) -> xr.Dataset:
+    _check_surface(points, x, y)
     places = len(points) * int(np.prod([frame[axis].nunique() for axis in axes]))
     if len(frame) < FEWEST_ROWS * places:
         raise FieldError(

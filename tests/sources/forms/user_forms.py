@@ -6,9 +6,10 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import pandas as pd
 import pytest
 from form_table import form, variants
-from known_flow import Truth, in_plane, on_earth, plane, wind
+from known_flow import Truth, at_points, in_plane, on_earth, plane, wind
 
 X, Y = np.linspace(0.0, 3.0, 13), np.linspace(0.0, 1.0, 9)
 LON, LAT = np.arange(0.0, 24, 2), np.arange(20.0, 51, 3)
@@ -118,3 +119,62 @@ def binary_file_of_tecplot(folder: Path) -> Any:
     path = folder / "flow.plt"
     path.write_bytes(b"#!TDV112" + bytes(200))
     return path
+
+
+@form()
+def columns_with_exponents_of_fortran(folder: Path) -> Any:
+    path = folder / "flow.dat"
+    rows = [" ".join(f"{value:.8e}" for value in row) for row in np.column_stack(flat())]
+    path.write_text("\n".join(rows).replace("e", "D"))
+    return path, in_plane(X, Y)
+
+
+# --- points -------------------------------------------------------------------------------------
+
+PLACES = np.random.default_rng(3).uniform(0, 1, (300, 3))
+
+
+@variants(["Coordinates Velocities", "points velocity", "positions vel"])
+def arrays_of_points_and_vectors(names: str) -> Any:
+    """As h5py has them from snapshots of simulations; other arrays of the points are scalars."""
+    places, vectors = names.split()
+    u, v = plane(*PLACES[:, :2].T)
+    arrays = {places: PLACES[:, :2], vectors: np.stack([u, v, 0 * u], axis=-1), "Density": u + v}
+    scalars = {"Density": lambda x, y, t: sum(plane(x, y))}
+    return arrays, at_points(PLACES[:, :2], scalars=scalars)
+
+
+@form(error="the points fill a volume.*Choose a layer.*or drop z")
+def points_in_a_volume() -> Any:
+    return {"Coordinates": PLACES, "Velocities": PLACES}
+
+
+@form()
+def points_on_a_hill() -> Any:
+    """Heights that depend on the place leave a surface, drawn from above."""
+    x, y = PLACES[:, :2].T
+    u, v = plane(x, y)
+    columns = {"x": x, "y": y, "z": np.exp(-10 * (x - 0.5) ** 2), "u": u, "v": v}
+    return pd.DataFrame(columns), at_points(PLACES[:, :2])
+
+
+@form()
+def columns_of_floris() -> Any:
+    """Models of wakes of turbines: places x1, x2 and x3, the height of the plane."""
+    x, y, u, v = flat()
+    columns = {"x1": x, "x2": y, "x3": 90 + 0 * x, "u": u, "v": v, "w": 0 * u}
+    return pd.DataFrame(columns), in_plane(X, Y)
+
+
+@form(says="direction from")
+def columns_of_a_weather_service() -> Any:
+    """Open-Meteo and others: the height is behind the speed, and units are in brackets."""
+    lon, lat = (part.ravel() for part in np.meshgrid(LON, LAT))
+    u, v = wind(lon, lat)
+    columns = {
+        "longitude": lon,
+        "latitude": lat,
+        "wind_speed_10m (km/h)": 3.6 * np.hypot(u, v),
+        "wind_direction_10m (°)": np.degrees(np.arctan2(-u, -v)) % 360,
+    }
+    return pd.DataFrame(columns), on_earth(LON, LAT)
