@@ -367,7 +367,7 @@ def _columns_of_points(
 ) -> dict[str, AnyArray]:
     """Return the columns of points (N, 2 or 3) and their vectors; empty for other arrays."""
     places = _first_shaped(data, known, POINTS)
-    names = POINT_VELOCITIES
+    names: tuple[str, ...] = POINT_VELOCITIES
     if vectors is not None:
         names = (vectors.lower(),)
     velocity = _first_shaped(data, known, names)

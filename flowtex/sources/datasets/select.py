@@ -62,7 +62,7 @@ SPREAD = re.compile(
 WITH_LETTER = re.compile(r"^[uv]_?x\d*m?$")
 #: Names that are a velocity even where nothing else says so, without the letter of the component.
 BARE = re.compile(
-    r"^(|o|a|u|v|bar|vel|velocity|wind|wnd|cur|curr|current|grd|as|gos|water|component|"
+    r"^(|o|a|u|v|bar|vel|velocity|wind|wnd|cur|curr|current|grd|as|gos|water|comp|component|"
     r"eulerian_current_velocity|.*(velocity|wind|current).*|"
     r"hvel|dahv|horizontalvel|depthaveragevel|nod|ureconstruct)\d*m?$"
 )

@@ -46,6 +46,8 @@ LEVELS = re.compile(r"^(z|lev\w*|depth|height|altitude|plev|pressure)$", re.I)
 TIMES = re.compile(r"^(t|(valid_?)?(date_?)?time\w*|date)$", re.I)
 #: The new name of positions across a plane, which are the same everywhere.
 ACROSS_PLANE = "across the plane"
+#: Columns that together are dates.
+PARTS_OF_DATES = ("year", "month", "day", "hour", "minute", "second")
 #: Names and units of columns in the header of a .vec file.
 VEC_COLUMN = re.compile(r'"(\S+)\s*([^",]*)"')
 #: The column of flags of a .vec file.
@@ -134,6 +136,7 @@ def of_table(table: Any) -> xr.Dataset:
             "beside the components; rename the columns, as in df.rename(columns=...)"
         )
     x, y = pair
+    frame = _with_dates(frame)
     frame = frame.dropna(subset=[x, y])
     changes, plane = _along_plane(frame, x, y)
     frame = frame.rename(columns=changes)
@@ -302,6 +305,26 @@ def _axes(frame: Any, x: str, y: str) -> tuple[Any, list[str]]:
     return frame, [str(axis) for axis in axes]
 
 
+def _with_dates(frame: Any) -> Any:
+    """Return a table with a column of dates in place of their years, months, days and so on."""
+    found = {}
+    for name in frame.columns:
+        word = str(name).lower()
+        if TIMES.match(word):
+            return frame
+        if word in PARTS_OF_DATES:
+            found[word] = name
+    if not {"year", "month", "day"} <= set(found):
+        return frame
+    pandas = import_extra("pandas", "xarray")
+    parts = {word: frame[name] for word, name in found.items()}
+    try:
+        dates = pandas.to_datetime(pandas.DataFrame(parts))
+    except (ValueError, TypeError):  # such as months as names
+        return frame
+    return frame.drop(columns=list(found.values())).assign(time=dates)
+
+
 def _times_in(frame: Any, time: str) -> Any:
     """Return a column of times as numbers or dates; raises a FieldError for others."""
     column = frame[time]
@@ -440,7 +463,7 @@ def _check_rows(path: Path, separator: str | None, *, header: int = 0) -> None:
                     raise cut_row(number + bool(header), row, f"{len(row)} of {count} values")
     except csv.Error as error:
         raise FieldError(f"its rows cannot be read ({error}); write or copy it again") from error
-    if row and not row[-1].strip() and not _ends_with_line(path):
+    if row and len(row) <= count and not row[-1].strip() and not _ends_with_line(path):
         raise cut_row(number + bool(header), row, "no end and no last value")
 
 

@@ -178,3 +178,26 @@ def columns_of_a_weather_service() -> Any:
         "wind_direction_10m (°)": np.degrees(np.arctan2(-u, -v)) % 360,
     }
     return pd.DataFrame(columns), on_earth(LON, LAT)
+
+
+# --- columns of dates, and rows that end with a separator ---------------------------------------
+
+
+@form()
+def columns_of_years_months_days_and_hours() -> Any:
+    lon, lat = (part.ravel() for part in np.meshgrid(LON, LAT))
+    parts = []
+    for hour in (0, 6):
+        u, v = wind(lon, lat, hour)
+        date = {"Year": 2024, "Month": 1, "Day": 1, "Hour": hour}
+        parts.append(pd.DataFrame({**date, "Lat": lat, "Long": lon, "U_COMP": u, "V_COMP": v}))
+    return pd.concat(parts), on_earth(LON, LAT, (0.0, 6.0))
+
+
+@form()
+def rows_that_end_with_a_separator(folder: Path) -> Any:
+    """Without a last end of line."""
+    path = folder / "flow.csv"
+    rows = [",".join(f"{value:.8g}" for value in row) + "," for row in np.column_stack(flat())]
+    path.write_text("\n".join(["x,y,u,v,", *rows]))
+    return path, in_plane(X, Y)
