@@ -173,9 +173,12 @@ class FieldData:
     @property
     def normal_share(self) -> float:
         """Share of the flow that is normal to the surface, and so is not drawn, 0 to 1."""
-        frame = self.surface.frame
-        if isinstance(self.surface, TriangleSurface) and self.surface.is_large:
-            return self.surface.normal_share(self.velocity[0])
+        surface = self.surface
+        frame = surface.frame
+        if isinstance(surface, TriangleSurface) and surface.is_large:
+            return surface.normal_share(self.velocity[0])
+        if isinstance(surface, GridSurface) and surface.is_large and frame is None:
+            return surface.normal_share(self._at_hand)
         if frame is None or isinstance(self.velocity, LazySteps):
             return self.index_velocity.normal_share
         total = 0.0
@@ -188,6 +191,13 @@ class FieldData:
         if total > 0:
             return float(np.sqrt(min(normal / total, 1.0)))
         return 0.0
+
+    @property
+    def _at_hand(self) -> Floats:
+        """The velocity at all steps in memory, or at the first one, (T, J, I, 3)."""
+        if isinstance(self.velocity, LazySteps):
+            return np.asarray(self.velocity[0][None])
+        return np.asarray(self.velocity)
 
     @property
     def leaves_surface(self) -> bool:

@@ -80,3 +80,32 @@ def test_the_normal_share_is_that_of_nodes_with_data() -> None:
     shown = velocity[valid]
     expected = np.sqrt((shown[:, 2] ** 2).sum() / (shown**2).sum())
     assert field.normal_share == pytest.approx(expected)
+
+
+@pytest.mark.parametrize("steps", [1, 3])
+@pytest.mark.parametrize("rows", [8, 500])
+def test_the_normal_share_of_a_large_surface_is_that_of_some_rows(
+    rows: int, steps: int, rng: np.random.Generator
+) -> None:
+    longitude, latitude = np.meshgrid(np.linspace(0, 3, 250_000 // rows), np.linspace(-1, 1, rows))
+    across = np.cos(latitude)
+    points = np.stack(
+        [across * np.cos(longitude), across * np.sin(longitude), np.sin(latitude)], axis=-1
+    )
+    along = np.cross([0.0, 0.0, 1.0], points)
+    out = rng.normal(0, 0.2, (steps, *longitude.shape, 1))
+    velocity = along + out * points
+    times = np.arange(float(steps))
+    field = FlowField.from_arrays(points, velocity, times=times)
+    assert "index_velocity" not in field.__dict__
+    assert field.normal_share == pytest.approx(field.index_velocity.normal_share, rel=0.02)
+
+
+def test_a_large_surface_whose_rows_alternate_has_the_normal_share_of_all() -> None:
+    x, y = np.meshgrid(np.linspace(0, 2, 1000), np.linspace(0, 1, 250))
+    points = np.stack([x, y, 0.1 * np.sin(4 * x * y)], axis=-1)
+    velocity = np.ones_like(points)
+    valid = np.arange(250)[:, None] % 5 > 0
+    valid = np.broadcast_to(valid, x.shape)
+    field = FlowField.from_arrays(points, velocity, valid=valid)
+    assert field.normal_share == field.index_velocity.normal_share > 0.1

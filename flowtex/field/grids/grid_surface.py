@@ -28,6 +28,9 @@ from flowtex.field.validation import finite_nodes
 CORNERS = np.array((((0, 0), (0, 1), (1, 1)), ((0, 0), (1, 1), (1, 0))))
 #: Steps (j, i) to the cells across the edges opposite to these corners.
 ACROSS = np.array((((0, 1), (0, 0), (-1, 0)), ((1, 0), (0, -1), (0, 0))))
+LARGE_NODES = 200_000  #: Nodes from which the normal share is measured at some rows.
+MEASURED_NODES = 50_000  #: Least nodes at which it is measured.
+LEAST_ROWS = 32  #: Least rows at which it is measured.
 POLE_LINES = 8  #: Lines from a pole over which the size of the cells turns into their length.
 
 
@@ -190,22 +193,44 @@ class GridSurface(NodeSurface):
     @cached_property
     def tangents(self) -> Floats:
         """Derivatives of position by i and by j at the nodes, (2, J, I, 3), per cell."""
+        return self._tangents_of(slice(None))
+
+    def _tangents_of(self, rows: slice) -> Floats:
+        """Return the tangents of some rows of nodes."""
         good = np.pad(self.has_position, 1, constant_values=True)
         p = self.padded
-        middle = p[1:-1, 1:-1]
-        result = np.empty((2, *self.points.shape))
+        middle = p[1:-1, 1:-1][rows]
+        result = np.empty((2, *middle.shape))
         sides = (
             (p[1:-1, :-2], p[1:-1, 2:], good[1:-1, :-2], good[1:-1, 2:]),
             (p[:-2, 1:-1], p[2:, 1:-1], good[:-2, 1:-1], good[2:, 1:-1]),
         )
-        for b in row_blocks(*self.shape):
-            for out, (before, after, known, further) in zip(result, sides, strict=True):
-                _difference(before[b], middle[b], after[b], known[b], further[b], out[b])
-        return fill_blanked(result, self.has_position, axis=1)
+        for out, (before, after, known, further) in zip(result, sides, strict=True):
+            near = before[rows]
+            far = after[rows]
+            good_near = known[rows]
+            good_far = further[rows]
+            for b in row_blocks(*middle.shape[:2]):
+                _difference(near[b], middle[b], far[b], good_near[b], good_far[b], out[b])
+        return fill_blanked(result, self.has_position[rows], axis=1)
 
     def express(self, velocity: Floats) -> IndexVelocity:
         """Express a velocity (T, J, I, 3), zero at nodes that are not valid, in index space."""
         return to_index_space(self.tangents, self.valid, self.poles, velocity)
+
+    @property
+    def is_large(self) -> bool:
+        """Whether :meth:`normal_share` represents all of the surface well."""
+        return self.valid.size > LARGE_NODES
+
+    def normal_share(self, velocity: Floats) -> float:
+        """Return the normal share of a velocity (T, J, I, 3), sampled at some rows of nodes."""
+        apart = min(self.valid.size // MEASURED_NODES, self.shape[0] // LEAST_ROWS)
+        rows = slice(0, None, max(apart, 1))
+        if not self.valid[rows].any():
+            return self.express(velocity).normal_share
+        tangents = self._tangents_of(rows)
+        return to_index_space(tangents, self.valid[rows], None, velocity[:, rows]).normal_share
 
     @cached_property
     def cell_size(self) -> Floats:
