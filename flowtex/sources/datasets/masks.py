@@ -265,7 +265,11 @@ _HUGE = 1e11
 _HUGE_RATIO = 1e3
 #: Least distance of a usual fill value from the others, as a multiple of their extent.
 _USUAL_RATIO = 0.5
-#: Least number of times that a fill value occurs.
+#: The same for a value that occurs a few times only.
+_FEW_RATIO = 100.0
+#: Least number of other values that tell such a one.
+_FEWEST_OTHERS = 30
+#: Number of times from which on a fill value is not rare.
 _FEW = 10
 #: Least share of fill values in small arrays.
 _SHARE = 0.01
@@ -285,7 +289,8 @@ def undeclared_fill(values: Floats) -> float | None:
     """Return the value of an array that stands for missing data, or ``None``.
 
     It is the least or the greatest value, repeats exactly, and lies far outside the others: further
-    from them than half their extent, zero included. There may be another one once it is masked.
+    from them than half their extent, zero included, or much further if it is rare. There may be
+    another one once it is masked.
     """
     finite = np.ravel(values)
     if not finite.size:
@@ -305,11 +310,17 @@ def undeclared_fill(values: Floats) -> float | None:
         same = finite == value
         count = int(np.count_nonzero(same))
         rest = finite[~same]
-        if not rest.size or count < max(2, min(_FEW, _SHARE * finite.size)):
+        is_rare = count < max(2, min(_FEW, _SHARE * finite.size))
+        if not rest.size or (is_rare and rest.size < _FEWEST_OTHERS):
             continue
         low = min(float(rest.min()), 0.0)
         high = max(float(rest.max()), 0.0)
         distance = max(low - value, value - high)
-        if distance > (high - low) * (_HUGE_RATIO if is_huge else _USUAL_RATIO):
+        ratio = _USUAL_RATIO
+        if is_huge:
+            ratio = _HUGE_RATIO
+        if is_rare:
+            ratio = max(ratio, _FEW_RATIO)
+        if distance > (high - low) * ratio:
             return value
     return None

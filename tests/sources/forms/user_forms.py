@@ -9,7 +9,7 @@ import numpy as np
 import pandas as pd
 import pytest
 from form_table import form, variants
-from known_flow import Truth, at_points, in_plane, on_earth, plane, wind
+from known_flow import Truth, at_points, earth, in_plane, on_earth, plane, wind, without
 
 X, Y = np.linspace(0.0, 3.0, 13), np.linspace(0.0, 1.0, 9)
 LON, LAT = np.arange(0.0, 24, 2), np.arange(20.0, 51, 3)
@@ -201,3 +201,12 @@ def rows_that_end_with_a_separator(folder: Path) -> Any:
     rows = [",".join(f"{value:.8g}" for value in row) + "," for row in np.column_stack(flat())]
     path.write_text("\n".join(["x,y,u,v,", *rows]))
     return path, in_plane(X, Y)
+
+
+@variants([-9999.0, 1e20])
+def one_missing_value_that_is_not_declared(fill: float) -> Any:
+    ds = earth(LON, LAT)
+    ds.u[3, 4] = fill
+    lost = np.zeros(ds.u.shape, dtype=bool)
+    lost[3, 4] = True
+    return ds, without(on_earth(LON, LAT), lost)
