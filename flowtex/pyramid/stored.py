@@ -155,7 +155,8 @@ class StoredPyramid(GridPyramid):
         Raises
         ------
         PyramidError
-            When nodes of a tile are not those of the level above, as parts of two stores would be.
+            When data cannot be read, or nodes of a tile are not those of the level above, as where
+            files of two builds are mixed.
         """
         made = super().tiles(keys, steps)
         for key, textures in made.items():

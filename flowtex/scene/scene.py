@@ -692,14 +692,14 @@ def _look_beside(first: Scene, changes: dict[str, Any], field: FlowField) -> App
 def link_scenes(
     first: Callable[[], Scene], second: Callable[[], Scene], own: Collection[str]
 ) -> Callable[[], None]:
-    """Give a second scene beside a first one the settings and the appearance of that one, for good.
+    """Apply later changes of a first scene to a second one beside it, except ``own``.
 
     Parameters
     ----------
     first, second
         Return the scenes that are shown at the moment.
     own
-        Names of settings and of parts of the appearance in which both differ.
+        Names of settings and of parts of the appearance that the second scene keeps.
 
     Returns
     -------

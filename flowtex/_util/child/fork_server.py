@@ -19,7 +19,7 @@ from contextlib import suppress
 from importlib import import_module
 from typing import Any, NoReturn
 
-from flowtex._util.child.worker import command, serve, settle
+from flowtex._util.child.worker import command, confine, serve
 from flowtex._util.forks import ProcessLock, call_at_fork
 
 REQUEST_BYTES = 65_536  #: Bytes of a request.
@@ -111,7 +111,7 @@ def _guard(start: dict[str, Any], reads: int, writes: int, status: int) -> None:
     if (pid := os.fork()) == 0:
         os.close(ended)
         os.close(status)
-        settle(start["memory"], prints=start["prints"])
+        confine(start["memory"], prints=start["prints"])
         serve(start["entry"], os.fdopen(reads, "rb"), os.fdopen(writes, "wb"))
     for pipe in (reads, writes, alive):
         os.close(pipe)

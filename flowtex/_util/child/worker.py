@@ -56,12 +56,16 @@ def spawned(entry: str, memory: int, prints: bool) -> None:  # noqa: FBT001 by n
     """Answer the requests that come on the standard input, in a separate process."""
     reads = os.dup(0)
     writes = os.dup(1)
-    settle(memory, prints=prints)
+    confine(memory, prints=prints)
     serve(entry, os.fdopen(reads, "rb"), os.fdopen(writes, "wb"))
 
 
-def settle(memory: int, *, prints: bool) -> None:
-    """Limit memory, and let the system end it first; drop output unless it ``prints``."""
+def confine(memory: int, *, prints: bool) -> None:
+    """Limit this process to so many further bytes, and drop its output.
+
+    Where memory runs out the system ends it before others, and no core is dumped. The standard
+    streams are the null device from here on, except that of errors if it ``prints``.
+    """
     device = os.open(os.devnull, os.O_RDWR)
     os.dup2(device, 0)
     os.dup2(device, 1)

@@ -17,8 +17,9 @@ _fields: WeakCache[Any] = WeakCache()
 def with_scalars(field: Data, name: str | None) -> Data:
     """Return the field with a scalar that is derived from its vectors, such as vorticity.
 
-    A field is returned unchanged that has the scalar already, that does not distinguish v from -v,
-    or of which only a coarse level is in memory; then :func:`steps_of` says what to do.
+    A field is returned unchanged that has the scalar already, whose vectors have no such
+    derivative, as v and -v mean the same, or of which only a coarse level is in memory. Then
+    :func:`steps_of` says what to do.
     """
     if name is None or name in ("speed", *field.scalars) or finest_of(field) is not None:
         return field

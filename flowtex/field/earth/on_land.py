@@ -52,9 +52,9 @@ def _within(lon: Floats, lat: Floats, points: Floats, joined: Bools) -> Bools:
     # on land. South of Antarctica's coast this holds as well.
     turned = (flat_lon[known] + TURN / 2) % TURN - TURN / 2
     strips, strip = np.unique(np.rint(turned / COLUMN_DEGREES), return_inverse=True)
-    owner, height = _crossings((strips + 0.5) * COLUMN_DEGREES, points, joined)
+    number, latitude = _crossings((strips + 0.5) * COLUMN_DEGREES, points, joined)
     # Both sorted by strip and by latitude there, as one number.
-    keys = np.sort(owner * TURN + height)
+    keys = np.sort(number * TURN + latitude)
     last = np.searchsorted(keys, strip * TURN + TURN / 2)
     first = np.searchsorted(keys, strip * TURN + flat_lat[known])
     result[known] = (last - first) % 2 == 1
@@ -62,22 +62,26 @@ def _within(lon: Floats, lat: Floats, points: Floats, joined: Bools) -> Bools:
 
 
 def _crossings(meridians: Floats, points: Floats, joined: Bools) -> tuple[Floats, Floats]:
-    """Return where lines cross ascending meridians: the number of each and the latitude."""
+    """Return where segments cross ascending meridians: the number of each and the latitude.
+
+    Segment k is from ``points[k]`` to ``points[k + 1]`` where ``joined[k]``. Crossings north of a
+    place on its meridian are counted, so numbers are floats, to be sorted with the latitude.
+    """
     start = points[:-1][joined]
     step = np.diff(points, axis=0)[joined]
     step[:, 0] = (step[:, 0] + TURN / 2) % TURN - TURN / 2
     west = np.minimum(start[:, 0], start[:, 0] + step[:, 0])
     east = np.maximum(start[:, 0], start[:, 0] + step[:, 0])
-    owners = []
-    heights = []
+    numbers = []
+    latitudes = []
     for shift in (-TURN, 0.0, TURN):  # a line may go on across the date line
         low = np.searchsorted(meridians + shift, west, side="right")
         high = np.searchsorted(meridians + shift, east, side="right")
         counts = high - low
-        line = np.repeat(np.arange(len(west)), counts)
-        within = np.arange(len(line)) - np.repeat(np.cumsum(counts) - counts, counts)
-        owner = low[line] + within
-        share = (meridians[owner] + shift - start[line, 0]) / step[line, 0]
-        owners.append(owner.astype(float))
-        heights.append(start[line, 1] + share * step[line, 1])
-    return np.concatenate(owners), np.concatenate(heights)
+        segment = np.repeat(np.arange(len(west)), counts)
+        within = np.arange(len(segment)) - np.repeat(np.cumsum(counts) - counts, counts)
+        number = low[segment] + within
+        share = (meridians[number] + shift - start[segment, 0]) / step[segment, 0]
+        numbers.append(number.astype(float))
+        latitudes.append(start[segment, 1] + share * step[segment, 1])
+    return np.concatenate(numbers), np.concatenate(latitudes)

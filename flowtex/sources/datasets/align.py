@@ -87,7 +87,7 @@ def align(
 def common(
     u: xr.DataArray, v: xr.DataArray, dim: str, one: AnyArray, other: AnyArray, record: Record
 ) -> labels.Match:
-    """Return the labels that two variables have in common, and record the others.
+    """Return where two variables have common labels, and record how many others there are.
 
     Parameters
     ----------

@@ -388,7 +388,7 @@ def _note_fold(flow: Flow) -> None:
     flow.record(
         "surface",
         f"the fold along the last row is not joined, as the grid has {places.a.size:,} nodes: "
-        f"streaks and derivatives end there. That of a part with up to {most:,} is, as of "
+        f"streaks and derivatives end there. To join it, select up to {most:,}, as in "
         f"ds.isel({dim}=slice({-(most // places.a.shape[1])}, None))",
         notable=True,
     )

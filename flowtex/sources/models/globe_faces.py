@@ -326,7 +326,8 @@ def _whole_edges(kind: Indices, face: Indices, place: Indices) -> tuple[Indices,
 
     The arrays are (edges, cells); an edge of the kind 0 is a first column, of the kind 1 a first
     row, and -1 means that none is met. Cells along one edge may disagree: all of them get the edge
-    that most of them meet, in the order of its cells or the reverse.
+    that most of them meet, in the order of its cells or the reverse, and none if fewer than half
+    meet any.
     """
     kinds = np.full(kind.shape, -1)
     faces = np.full(kind.shape, -1)
