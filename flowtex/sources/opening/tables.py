@@ -370,7 +370,8 @@ def _check_surface(points: Any, x: str, y: str) -> None:
     places = points[[x, y]].to_numpy(dtype=float)
     heights = points[z].to_numpy(dtype=float)
     size = np.maximum(np.ptp(places, axis=0), np.finfo(float).tiny)
-    neighbours = KDTree(places / size).query(places / size, k=2)[1][:, 1]
+    _, nearest = KDTree(places / size).query(places / size, k=2)
+    neighbours = np.asarray(nearest)[:, 1]  # the first one is the point itself
     steps = np.abs(heights[neighbours] - heights)
     if np.nanmean(steps) > VOLUME_STEP * np.nanstd(heights) > 0:
         low, middle, high = np.nanquantile(heights, (0.45, 0.5, 0.55))
