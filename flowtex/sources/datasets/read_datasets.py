@@ -374,7 +374,7 @@ def _space_plane(flow: Flow) -> SpacePlane | None:
     else:
         plane = plane_of(*flow.pair.u.coords.values())
     if plane is not None:
-        flow.record("coordinates", f"x and y are along the plane {plane} in space")
+        flow.record("coordinates", f"the flow lies in space, in the plane {plane}")
     return plane
 
 

@@ -23,11 +23,13 @@ HEAD_BYTES = 4096  #: Bytes that are read to tell text from others.
 ZONE = re.compile(rb"^[ \t]*ZONE\b", re.I | re.M)
 #: Beginnings of the lines of numbers, and of the records that end them.
 NUMBERS = re.compile(rb"^[ \t]*[-+.\d]", re.M)
-RECORD = re.compile(rb"^[ \t]*[A-Z]", re.I | re.M)
+RECORD = re.compile(rb"^[ \t]*(?!nan\b|inf)[A-Z]", re.I | re.M)
 VARIABLES = re.compile(rb"^[ \t]*VARIABLES\s*=\s*", re.I | re.M)
-#: Names of variables, in quotes or between commas and blanks.
+#: Names of variables, in quotes or between commas and blanks, up to the next record.
 QUOTED = re.compile(r'"[^"]*"')
+ALL_QUOTED = re.compile(r'(?:[\s,]*"[^"]*")+')
 BARE = re.compile(r"[^\s,]+")
+NEXT_RECORD = re.compile(r"^[^\n=]*=", re.M)
 #: Numbers of nodes along the axes of a structured zone, and of nodes and cells of another.
 COUNT = re.compile(r"\b(I|J|K|N|E|NODES|ELEMENTS)\s*=\s*(-?\d+)", re.I)
 CELL_CENTERED = re.compile(r"\[([\d,\-\s]+)\]\s*=\s*CELLCENTERED", re.I)
@@ -92,7 +94,9 @@ def _count_variables(head: bytes) -> int:
     if match is None:
         raise FieldError("the file names no variables; expected a line that begins with VARIABLES")
     text = head[match.end() :].decode("latin-1")
-    return len(QUOTED.findall(text) or BARE.findall(text))
+    if quoted := ALL_QUOTED.match(text):
+        return len(QUOTED.findall(quoted[0]))
+    return len(BARE.findall(NEXT_RECORD.split(text)[0]))
 
 
 def _declared(header: str, names: int, label: str) -> int:

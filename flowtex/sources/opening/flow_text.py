@@ -237,7 +237,7 @@ def _rows(path: Path, layout: Layout) -> Iterator[list[str]]:
             if not is_row or len(parts) != layout.columns:
                 raise tables.cut_row(number, parts, f"{len(parts)} of {layout.columns} numbers")
             begun = True
-            yield "\t".join(parts).translate(EXPONENTS).split("\t")
+            yield [part.translate(EXPONENTS) for part in parts]
 
 
 def _by_order(frame: Any) -> tuple[Any, str]:

@@ -46,7 +46,29 @@ def elements() -> str:
     return head + numbers(np.stack(columns, axis=-1)) + "\n" + numbers(corners) + "\n"
 
 
-FORMS: dict[str, Callable[[], str]] = {"points": points, "blocks": blocks, "elements": elements}
+def described() -> str:
+    """Points below records of a title and of remarks, and a value that is no number at each end."""
+    remarks = 'TITLE = "of the flow"\nDATASETAUXDATA Solver = "a = 1"\n'
+    text = points().replace("ZONE", f"{remarks}ZONE").replace('"V"\n', '"V"\n"P"\n')
+    head, _, rows = text.partition("F=POINT\n")
+    lines = [f"{row} NaN" for row in rows.splitlines()]
+    return f"{head}F=POINT\n" + "\n".join(lines) + "\n"
+
+
+def unquoted() -> str:
+    """Blocks whose names are followed by a record, and with lines that begin without a number."""
+    head = 'VARIABLES = p, x, y, u, v\nTITLE = "a flow"\nZONE I=9 J=7 F=BLOCK\n'
+    missing = "0" + 62 * "\nNaN"
+    return head + "\n".join([missing, *map(numbers, (X, Y, U, V))]) + "\n"
+
+
+FORMS: dict[str, Callable[[], str]] = {
+    "points": points,
+    "blocks": blocks,
+    "elements": elements,
+    "described": described,
+    "unquoted": unquoted,
+}
 
 
 @pytest.mark.parametrize("ending", [".dat", ".tec", ".tp", ".plt"])
